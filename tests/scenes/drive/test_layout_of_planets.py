@@ -12,16 +12,16 @@ FILE = Path(__file__).parents[3] / "problems" / "planetary_box.toml"
 LIST = ["30 mm", "40 mm", "50 mm", "60 mm"]
 
 REFUSED = [  # changes, key, words
-    ({"layout.together": True}, "stage[1].type", "its gears are sized first"),
-    ({"layout.slabs": [[1], [2], [3]]}, "stage[1].type", "bearings and slabs"),
+    ({"layout.together": True}, "layout.together", "its gears are sized before"),
+    ({"layout.slabs": [[1], [2], [3]]}, "layout.slabs", "where they may be is not known"),
     (
         {"layout.bearing_diameters": LIST, "layout.bearing_widths": LIST},
-        "stage[1].type",
-        "bearings and slabs",
+        "layout.bearing_widths",
+        "where they may be is not known",
     ),
     (
         {"stage[2].type": "planetary", "stage[3].type": "planetary"},
-        "stage[1].type",
+        "layout",
         "all is in one line",
     ),
 ]
@@ -32,6 +32,7 @@ def test_what_a_layout_with_planets_has_not_is_refused(changes, key, words):
     with pytest.raises(SceneError) as wrong:
         gearopt.load(FILE, changes)
     assert wrong.value.key == key and words in wrong.value.rule
+    assert wrong.value.fix is not None and wrong.value.fix.action == "remove"
 
 
 @pytest.mark.slow

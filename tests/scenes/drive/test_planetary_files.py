@@ -155,15 +155,44 @@ def test_materials_of_a_ring_are_asked_for_by_its_name():
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"rating.standard": "agma", "rating.quality": 8, "rating.iso6336": None}, "AGMA 908"),
-        ({"objective.minimise": "total_length"}, "gear_volume, mass or mesh_loss"),
-        ({"teeth.coprime": True}, "mesh_order"),
-        ({"teeth": None}, "whole teeth are chosen"),
+        ({"rating": {"standard": "agma"}}, r'rating\.standard = "agma": .*AGMA 908.*= "iso6336"'),
+        ({"rating": None}, r'rating: is missing: .*\[rating\] with standard = "iso6336"'),
+        (
+            {"objective.minimise": "total_length"},
+            r"objective\.minimise = .*gear_volume, mass and mesh_loss\. Write",
+        ),
+        ({"teeth.coprime": True}, r"teeth\.coprime = true: .*mesh_order.*Remove it"),
+        ({"teeth": None}, r"teeth: is missing: .*whole teeth are chosen\. Write a table \[teeth\]"),
+        ({"layout": {"shaft_stress": "40 MPa"}}, r"layout = .*another stage.*Remove it"),
+        ({"process_one": {"stage_ratios": [5.25]}}, r"process_one = .*Remove it"),
+        ({"stage[1].helix_angle": ["8 deg", "9 deg"]}, r'\.helix_angle = .*Write.*"8 deg"'),
+        ({"gears.helix_angle": ["8 deg", "9 deg"]}, r'gears\.helix_angle = .*Write.*"8 deg"'),
+        ({"limits.axial_force": "2 kN"}, r'limits\.axial_force = "2 kN": .*Remove it'),
+        ({"limits.preset": "chong-lee-elevator"}, r"limits\.preset = .*Remove it"),
+        ({"stage[1].centre_distance": "90 mm"}, r"of gears that are all given"),
+        ({"limits": None}, r"limits: is missing .*sun_teeth.*pinion_teeth = \[12, 40\]"),
+        ({"stage[1].type": "Planetenstufe"}, 'Write type = "planetary"'),
+        ({"stage[1].annulus_teeth": 80}, r"annulus_teeth = 80: .*Write ring_teeth"),
+        ({"stage[1].planet_teeth_reduction": 0.3}, r"= 0\.3: .*no multiple of 0\.5"),
     ],
 )
-def test_what_cannot_be_done_beside_planets_is_said(change, words):
+def test_what_cannot_be_done_beside_planets_is_said_of_its_own_key(change, words):
     with pytest.raises(SceneError, match=words):
         gearopt.solve(STAGE, change)
+
+
+def test_limits_beside_given_gears_at_a_distance_are_named():
+    tables = tomllib.loads(WIND.read_text()) | {"limits": {"pinion_teeth": [12, 40]}}
+    tables["duty"] |= {"ratio": 6.17}
+    with pytest.raises(SceneError, match=r"limits = .*only rated\. Remove it"):
+        gearopt.solve(tables)
+
+
+def test_one_reduction_of_planets_is_read_as_a_list_of_it():
+    assert (
+        gearopt.solve(STAGE, {"stage[1].planet_teeth_reduction": 1}).design["stages"]
+        == (gearopt.solve(STAGE, {"stage[1].planet_teeth_reduction": [1]}).design["stages"])
+    )
 
 
 def test_planets_that_do_not_fit_a_given_stage_are_named():

@@ -15,7 +15,7 @@ from gearopt.formulations.strength.standard import Option
 from gearopt.physics.gears import RIM, Cutter
 from gearopt.physics.iso6336.bending_factors import THIN_RING
 from gearopt.physics.planetary.loads import SHARING_RULES, mesh_load_factor
-from gearopt.scenes.drive.idlers import copied, idlers
+from gearopt.scenes.drive.idlers import copied
 from gearopt.scenes.drive.rating.checks import check_objective, check_rated
 from gearopt.scenes.drive.rating.gears import loads, required_hours
 from gearopt.scenes.drive.rating.materials import check_materials, choices
@@ -32,6 +32,7 @@ from gearopt.scenes.drive.tables.planetary import (
 )
 from gearopt.scenes.drive.tables.rating import GearTable, RatingTable, with_shared
 from gearopt.scenes.drive.toothings import check_tools, rack
+from gearopt.scenes.drive.without_planets import against, lacking
 from gearopt.scenes.reading.choices import values_of
 from gearopt.scenes.reading.fields import refuse
 
@@ -131,63 +132,21 @@ def check_rings(scene: "Scene", rating: RatingTable) -> None:
         raise renamed(scene, wrong, OF_INNER) from None
 
 
-def check_planetary(scene: "Scene", lacks: str) -> None:
-    """Refuse what does not go together with planets or a ring.
-
-    lacks: what the file lacks for gears to be sized by ratings alone; "" for nothing.
-    """
+def check_planetary(scene: "Scene") -> None:
+    """Refuse what does not go together with planets or a ring."""
     for k, own in enumerate(scene.stage):
         if not own.epicyclic:
             continue
-        rule = _beside(scene, own) or (f"needs {lacks}" if lacks and scene.to_size else "")
-        if rule:
-            raise refuse(rule, at=("stage", k, "type"), action="remove")
+        if wrong := next(against(scene, own, k), None):
+            raise wrong
+        if scene.to_size and not scene.given and (wrong := lacking(scene, own)):
+            raise wrong
         for name in NOT_YET:
             if getattr(own, name):
                 rule = f'is not of type = "{own.type}"'
                 raise refuse(rule, at=("stage", k, name), action="remove")
-        if scene.to_size and own.centre_distance is not None:
-            rule = "is not chosen beside planets: it follows from their shifts"
-            raise refuse(rule, at=("stage", k, "centre_distance"), action="remove")
         _check_gears(scene, own, k)
         _check_teeth(scene, own, k)
-
-
-def _beside(scene: "Scene", own: StageTable) -> str:
-    """Why a file cannot have planets or a ring; "" where it can."""
-    if scene.UNRATED:
-        return "is for drives: a pair has external gears"
-    if scene.process_one or scene.process_two:
-        return "does not go together with processes: they are of external gears"
-    if scene.layout is not None and (rule := _in_layout(scene, own)):
-        return f"does not go together with {rule}"
-    if scene.rating is None or scene.rating.standard != "iso6336":
-        return 'needs a [rating] by standard = "iso6336": AGMA 908 has no J of rings'
-    if idlers(scene.stage) or scene.gears.same_materials or (scene.teeth and scene.teeth.coprime):
-        return "does not go together with idlers, same_materials and coprime (but mesh_order)"
-    if scene.limits.coaxial or scene.limits.sum_of_centre_distances:
-        return "does not go together with coaxial and sum_of_centre_distances of [limits]"
-    if scene.to_size and scene.objective.minimise not in ("gear_volume", "mass", "mesh_loss"):
-        return f"needs minimise = gear_volume, mass or mesh_loss, not {scene.objective.minimise}"
-    if scene.limits.axial_force is not None:
-        return "does not go together with axial_force of [limits], which is of pairs"
-    if len(scene.helix_angles(own)) > 1:
-        return "needs one helix angle"
-    return ""
-
-
-def _in_layout(scene: "Scene", own: StageTable) -> str:
-    """What of a [layout] a stage does not go together with; "" where it can be laid out."""
-    assert scene.layout is not None
-    if own.type == INTERNAL:
-        return "[layout]: a pinion stands inside its ring"
-    if scene.layout.together:
-        return "together = true of [layout]: its gears are sized first"
-    if scene.layout.bearing_widths or scene.layout.slabs:
-        return "bearings and slabs of [layout]: where they may be is not known"
-    if all(stage.type == PLANETARY for stage in scene.stage):
-        return "[layout], unless another stage is of external gears: all is in one line"
-    return ""
 
 
 def _check_gears(scene: "Scene", own: StageTable, k: int) -> None:

@@ -69,6 +69,7 @@ from gearopt.scenes.drive.toothings import (
     inclination,
     toothings,
 )
+from gearopt.scenes.drive.without_planets import check_standard, no_limits
 from gearopt.scenes.explaining.numbers import eased, in_reverse, written
 from gearopt.scenes.parts import Duty
 from gearopt.scenes.reading.choices import Between, Choice, Preferred, values_of
@@ -140,6 +141,13 @@ class Scene(Table):
         """Stages whose idlers have the keys of the wheels that they are."""
         return with_gears_named(with_idlers(stages))
 
+    @field_validator("rating", mode="before")
+    @classmethod
+    def _of_rings(cls, value: Any, info: ValidationInfo) -> Any:
+        """Refuse a standard that has no rings before what it asks for."""
+        check_standard(value, info.data.get("stage", ()))
+        return value
+
     @field_validator("limits", mode="wrap")
     @classmethod
     def _needed(cls, value: Any, handler: Callable[[Any], Limits], info: ValidationInfo) -> Limits:
@@ -177,7 +185,7 @@ class Scene(Table):
                 raise refuse("holds no module that [teeth] allows", self._around(stage), place)
         check_driving(self)
         check_idlers(self, self._lacks("beside an idler"))
-        check_planetary(self, "" if self.given else self._lacks("beside planets and rings"))
+        check_planetary(self)
         check_layout(self)
         self._check_loads()
         self._check_teeth()
@@ -276,7 +284,7 @@ class Scene(Table):
                     *self.duty.missing_ratio(), at=("duty", "output_speed"), action="sample"
                 )
             if "limits" not in self.model_fields_set:
-                raise refuse("is missing", at=("limits",))
+                raise no_limits(self)
         if self.rating is None:
             check_unrated(self.gears, self.stage, self.load, self.material, self.UNRATED)
         else:

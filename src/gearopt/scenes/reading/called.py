@@ -56,9 +56,9 @@ DRIVE = {
     "internal_gears internal_teeth innenverzahnung",
     'planets, in a [[stage]] of type = "planetary"': "number_of_planets planet_count n_planets "
     "planeten planetenzahl stage.planet_number",
-    'sun_teeth, in a [[stage]] of type = "planetary"': "z_sun sun_gear sonnenrad",
-    'ring_teeth, in a [[stage]] of type = "planetary" or "internal"': "z_ring ring_gear annulus "
-    "hohlrad",
+    'sun_teeth, in a [[stage]] of type = "planetary"': "z_sun stage.z_sun sun_gear sonnenrad",
+    'ring_teeth, in a [[stage]] of type = "planetary" or "internal"': "z_ring stage.z_ring "
+    "ring_gear annulus annulus_teeth stage.annulus_teeth hohlrad",
     'mesh_load_factor, in a [[stage]] of type = "planetary"': "k_gamma load_sharing_factor "
     "lastaufteilungsfaktor",
     "reversed_load, of a gear": "reverse_bending alternating alternating_load wechselbiegung",

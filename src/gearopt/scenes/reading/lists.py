@@ -162,15 +162,17 @@ def either(names: dict[str, Any], item: Reads) -> Reads:
     return Reads(read, next(iter(names)), {"anyOf": [{"enum": list(names)}, items]})
 
 
-def several(item: Reads, example: Any, in_order: bool = False) -> Reads:
+def several(item: Reads, example: Any, in_order: bool = False, single: bool = False) -> Reads:
     """Read a list of items, as a tuple in the file's order.
 
-    in_order: entry k belongs to item k, such as stage k.
+    in_order: entry k belongs to item k, such as stage k. single: one item is read, too.
     """
 
     def read(value: Any, example: Any) -> tuple[Any, ...]:
         if isinstance(value, tuple):
             return value
+        if single and not isinstance(value, list):
+            return (_for_example(item, value),)
         if not isinstance(value, list) or not value:
             raise refuse("is empty" if value == [] else "is not a list")
         write, rule = _accepted(item, value, in_order)
@@ -178,7 +180,8 @@ def several(item: Reads, example: Any, in_order: bool = False) -> Reads:
             raise refuse(f"has an entry that {rule}", write)
         return tuple(item.reader(entry, item.example) for entry in value)
 
-    return Reads(read, example, {"type": "array", "items": item.schema, "minItems": 1})
+    schema: dict[str, Any] = {"type": "array", "items": item.schema, "minItems": 1}
+    return Reads(read, example, {"anyOf": [item.schema, schema]} if single else schema)
 
 
 def pair(item: Reads) -> Reads:

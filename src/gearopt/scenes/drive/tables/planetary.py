@@ -7,11 +7,19 @@ from pydantic import Field, PrivateAttr, create_model
 
 from gearopt.formulations.drive.planetary import HELD, ORDERS
 from gearopt.scenes.drive.tables.rating import GearTable
-from gearopt.scenes.reading.fields import Table, choice, number, quantity, truth, whole
+from gearopt.scenes.reading.fields import Table, advised, choice, number, quantity, truth, whole
 from gearopt.scenes.reading.lists import several, span
 from gearopt.units import Quantity
 
 PARALLEL, PLANETARY, INTERNAL = TYPES = ("parallel", "planetary", "internal")
+TYPE = advised(
+    choice(*TYPES),
+    {
+        r"planeten\w*|umlauf\w*|epicycl\w*": 'Write type = "planetary"',
+        r"innen\w*|hohlrad\w*|annul\w*": 'Write type = "internal"',
+        r"stirnrad\w*|extern\w*|spur|helical": 'Write type = "parallel"',
+    },
+)
 USUAL = (3, 3)  # planets
 REDUCTIONS = (Fraction(0), Fraction(1, 2), Fraction(1))  # by default
 Teeth = tuple[int, int] | None
@@ -80,7 +88,7 @@ def gear_of(table: Table) -> GearTable:
 class PlanetaryKeys(Table):
     """What a stage has that is no pair of external gears."""
 
-    type: Annotated[str, choice(*TYPES)] = Field(
+    type: Annotated[str, TYPE] = Field(
         PARALLEL,
         description="parallel: a pair of external gears; planetary: sun, planets and ring; "
         "internal: a pinion in a ring. Sized by ISO 6336 in whole teeth, or all given and rated",
@@ -104,11 +112,12 @@ class PlanetaryKeys(Table):
         None, description="Number of teeth of the ring: fixed, or a range"
     )
     planet_teeth_reduction: Annotated[
-        tuple[Fraction, ...] | None, several(number(0.5, 0, 10, zero=True), [0, 0.5, 1])
+        tuple[Fraction, ...] | None,
+        several(number(0.5, 0, 10, zero=True), [0, 0.5, 1], single=True),
     ] = Field(
         None,
-        description="By how many teeth a planet may be smaller than (z_r - z_s)/2: multiples of "
-        "0.5 to choose from; by default 0, 0.5 and 1",
+        description="By how many teeth a planet may be smaller than (z_r - z_s)/2: a multiple of "
+        "0.5, or several to choose from; by default 0, 0.5 and 1",
     )
     mesh_load_factor: Annotated[Fraction | None, number(1.1, 1, 5)] = Field(
         None,
