@@ -1,8 +1,8 @@
 """Parts that kinds of gear drives share: the table [duty], and warnings of teeth."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from pydantic import ConfigDict, Field, model_validator
 
@@ -113,13 +113,21 @@ class Duty(Table):
         return units.quotient(self.input_speed, self.output_speed)
 
 
-def tooth_flaws(pairs: Iterable[GearPair]) -> Iterator[Flaw]:
-    """Yield the flaws of the teeth of every stage."""
-    for k, pair in enumerate(pairs, 1):
-        yield from flaws(pair, f" of stage {k}")
+def tooth_flaws(pairs: Iterable[GearPair], named: Sequence[Any] = ()) -> Iterator[Flaw]:
+    """Yield the flaws of the teeth of every stage, or of its meshes; named: `MeshName` of each."""
+    known = set[str]()
+    for k, pair in enumerate(pairs):
+        own = named[k] if named else None
+        gears = own.gears if own and own.suffix else None
+        for flaw in flaws(pair, f" of stage {own.stage if own else k + 1}", gears):
+            if flaw.sentence not in known:  # a planet is in two meshes
+                known.add(flaw.sentence)
+                yield flaw
 
 
-def tooth_warnings(pairs: Iterable[GearPair], weaker: str = "") -> Iterator[str]:
+def tooth_warnings(
+    pairs: Iterable[GearPair], weaker: str = "", named: Sequence[Any] = ()
+) -> Iterator[str]:
     """Yield a sentence for every flaw of the teeth; weaker: follows one of undercut."""
-    for flaw in tooth_flaws(pairs):
+    for flaw in tooth_flaws(pairs, named):
         yield flaw.sentence + (weaker if flaw.name == "undercut" else "")

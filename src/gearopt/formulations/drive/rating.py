@@ -188,6 +188,16 @@ class MeshName:
     wheel: str = "wheel"
     suffix: str = ""
 
+    @property
+    def gears(self) -> tuple[str, str]:
+        """Both gears, whichever mesh they are in."""
+        return self.pinion.partition(" at ")[0], self.wheel.partition(" at ")[0]
+
+    @property
+    def words(self) -> str:
+        """The mesh in a sentence: by its stage, of one with planets by its gears, too."""
+        return f"{' and '.join(self.gears)} of " * bool(self.suffix) + f"stage {self.stage}"
+
 
 @dataclass(frozen=True, kw_only=True)
 class DriveRating:
@@ -251,6 +261,10 @@ class DriveRating:
     def titled(self, mesh: int) -> str:
         """A mesh (from 1) by its stage."""
         return self.named[mesh - 1].title if self.named else f"stage {mesh}"
+
+    def mesh_words(self, mesh: int) -> str:
+        """A mesh (from 1) in a sentence."""
+        return self.named[mesh - 1].words if self.named else f"stage {mesh}"
 
     def stage_of(self, mesh: int) -> int:
         """The stage of a mesh, both from 1."""

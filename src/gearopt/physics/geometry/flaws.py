@@ -56,15 +56,17 @@ class Flaw:
     misfit: float = 0.0
 
 
-def flaws(pair: GearPair, of: str = "") -> tuple[Flaw, ...]:
+def flaws(pair: GearPair, of: str = "", named: tuple[str, str] | None = None) -> tuple[Flaw, ...]:
     """Return the flaws of a pair, fatal ones first, then misfits; none of a good pair.
 
-    of: what sentences add to what they are about, such as " of stage 1".
+    of: what sentences add to what they are about, such as " of stage 1". named: what both gears
+    are called, where there are more than two, as sun and planet.
     """
-    rows = zip(members(pair), pair.gears, strict=True)
+    called = named or members(pair)
+    rows = zip(called, pair.gears, strict=True)
     every = [flaw for member, gear in rows for flaw in _of_gear(member + of, gear)]
     if not any(flaw.fatal for flaw in every):
-        every += _of_pair(pair, of)
+        every += _of_pair(pair, of, called, f" of {' and '.join(called)}{of}" if named else of)
     return tuple(sorted(every, key=lambda flaw: (not flaw.fatal, not flaw.misfit)))
 
 
@@ -136,16 +138,16 @@ def _undercut(member: str, gear: Gear, depth: float) -> str:
     )
 
 
-def _of_pair(pair: GearPair, of: str) -> list[Flaw]:
-    """Flaws of the mesh of two gears that have teeth."""
+def _of_pair(pair: GearPair, of: str, called: tuple[str, str], of_both: str) -> list[Flaw]:
+    """Flaws of the mesh of two gears that have teeth; of_both: as `of`, but of the mesh."""
     if not math.isfinite(float(pair.working_angle)):
         text = (
-            f"No centre distance{of} goes with its profile shifts: their sum is too "
+            f"No centre distance{of_both} goes with its profile shifts: their sum is too "
             f"{'large' if is_internal(pair.wheel_teeth) else 'small'}."
             if pair.working_distance is None
-            else f"At the centre distance{of} the base circles have no common tangent."
+            else f"At the centre distance{of_both} the base circles have no common tangent."
             if is_internal(pair.wheel_teeth)
-            else f"At the centre distance{of} the base circles overlap."
+            else f"At the centre distance{of_both} the base circles overlap."
         )
         return [Flaw("no centre distance", text, True)]
     nominal, usable = contact_path(pair), usable_path(pair)
@@ -153,23 +155,24 @@ def _of_pair(pair: GearPair, of: str) -> list[Flaw]:
     of_mesh = []
     bare = float(nominal.transverse_ratio)
     if bare <= 0.0 or bare < 1.0 and bare + pair.overlap_ratio < 1.0:
-        text = f"The transverse contact ratio{of} is {bare:.3f}: contact breaks off."
+        text = f"The transverse contact ratio{of_both} is {bare:.3f}: contact breaks off."
         of_mesh.append(Flaw("contact ratio below 1", text, True))
     elif not ratio >= 1.0:
-        text = f"Form circles leave a transverse contact ratio{of} of {ratio:.3f}, below 1."
+        text = f"Form circles leave a transverse contact ratio{of_both} of {ratio:.3f}, below 1."
         fatal = not ratio + pair.overlap_ratio >= 1.0
         of_mesh.append(Flaw("usable contact ratio below 1", text, fatal))
     elif pair.overlap_ratio < 1.0 and ratio < LEAST_RATIO:
         left = " that the form circles leave" if ratio < bare else ""
         text = (
-            f"The contact ratio{of}{left} is small, {ratio:.3f}: errors of the gears may take "
+            f"The contact ratio{of_both}{left} is small, {ratio:.3f}: errors of the gears may take "
             f"contact away for a moment; {LEAST_RATIO:g} is a usual minimum."
         )
         of_mesh.append(Flaw("small contact ratio", text))
     if not any(flaw.fatal for flaw in of_mesh):
-        of_mesh = _backlash(pair, of) + of_mesh
-    of_mesh += _internal(pair, of) if is_internal(pair.wheel_teeth) else _interference(pair, of)
-    for member, clearance in zip(members(pair), tip_clearances(pair), strict=True):
+        of_mesh = _backlash(pair, of_both) + of_mesh
+    interference = _internal if is_internal(pair.wheel_teeth) else _interference
+    of_mesh += interference(pair, of, called)
+    for member, clearance in zip(called, tip_clearances(pair), strict=True):
         depth = -float(clearance) / pair.normal_module
         if depth > ROUNDING:
             text = f"The tips of the {member}{of} reach {-clearance:.3f} mm into the mate's root."
@@ -213,7 +216,10 @@ def least_backlash(pair: GearPair) -> float:
 
 
 def _interference(
-    pair: GearPair, of: str, names: tuple[str, str] = ("interference", "interference")
+    pair: GearPair,
+    of: str,
+    called: tuple[str, str],
+    names: tuple[str, str] = ("interference", "interference"),
 ) -> list[Flaw]:
     """Return the members into whose fillet the mate's tip cuts, or at least reaches.
 
@@ -221,7 +227,7 @@ def _interference(
     """
     of_tips = []
     for k, (gear, active) in enumerate(zip(pair.gears, active_root_diameters(pair), strict=True)):
-        member, form, module = members(pair)[k], float(form_diameter(gear)), gear.normal_module
+        member, form, module = called[k], float(form_diameter(gear)), gear.normal_module
         depth = tip_intrusion(pair, k)
         if depth > INTRUSION * module:
             text = (
@@ -241,12 +247,12 @@ def _interference(
 LIMITS = {  # of internal pairs: the flaw, and what happens by so many mm
     "trochoidal_interference": (
         "trochoidal interference",
-        "The tips of the pinion{of} foul those of the ring by {depth:.3f} mm as they leave mesh: "
+        "The tips of the {pinion}{of} foul those of the ring by {depth:.3f} mm as they leave mesh: "
         "shorten the tips, or take more teeth of the ring.",
     ),
     "radial_assembly": (
         "axial assembly",
-        "The pinion{of} does not fit into the ring radially in every position: tips overlap by "
+        "The {pinion}{of} does not fit into the ring radially in every position: tips overlap by "
         "{depth:.3f} mm. It is put in along the axis.",
     ),
     "cutter_involute": (
@@ -267,19 +273,20 @@ LIMITS = {  # of internal pairs: the flaw, and what happens by so many mm
 }
 
 
-def _internal(pair: GearPair, of: str) -> list[Flaw]:
+def _internal(pair: GearPair, of: str, called: tuple[str, str]) -> list[Flaw]:
     """Return what an internal pair and its cutter break of their limits."""
     left, of_pair, module = margins(pair), [], pair.normal_module
     for key, (name, text) in LIMITS.items():
         margin = float(left.get(key, 0.0))
         if margin < -ROUNDING:
             misfit = -margin if key == "trochoidal_interference" else 0.0
-            of_pair.append(Flaw(name, text.format(of=of, depth=-margin * module), misfit=misfit))
+            text = text.format(pinion=called[0], of=of, depth=-margin * module)
+            of_pair.append(Flaw(name, text, misfit=misfit))
     if of_pair and of_pair[0].misfit:  # tips that foul each other: no path to fillets is left
         return of_pair
     ended = left["involute_interference"] < 0.0
     first = "involute interference" if ended else "fillet interference"
-    return of_pair + _interference(pair, of, (first, "fillet interference"))
+    return of_pair + _interference(pair, of, called, (first, "fillet interference"))
 
 
 def tip_intrusion(pair: GearPair, member: int) -> float:

@@ -103,13 +103,14 @@ def _noted(scene: Scene, result: Result, exact: bool) -> Result:
     if not result.design:
         return result
     from gearopt.formulations.drive.design import drive_design
-    from gearopt.scenes.drive.rating.by_mesh import by_mesh
+    from gearopt.scenes.drive.rating.by_mesh import by_mesh, mesh_names
 
     design = drive_design(result.design)
     held = scene.held(len(design.stages))
     meshed, pairs, _ = by_mesh(held, design)
-    bodies = [flaw.sentence for flaw in body_flaws(meshed.blanks, pairs)]
-    remarks = [*notes(held, exact), *bodies, *tooth_warnings(pairs, WEAKER)]
+    named = mesh_names(meshed)
+    bodies = dict.fromkeys(f.sentence for f in body_flaws(meshed.blanks, pairs, (), named))
+    remarks = [*notes(held, exact), *bodies, *tooth_warnings(pairs, WEAKER, named)]
     report = result.report | ({"notes": remarks} if remarks else {})
     if any(len(held.helix_angles(own)) > 1 for own in held.stage_tables):
         report |= {"chosen": ["helix_angle_deg"]}

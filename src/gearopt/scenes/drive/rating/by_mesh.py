@@ -87,6 +87,12 @@ def by_mesh(scene: Scene, design: DriveDesign) -> Meshes:
     return made, tuple(pairs), names
 
 
+def mesh_names(scene: Scene) -> tuple[MeshName, ...]:
+    """What the meshes of a scene of `by_mesh` are called; none of one of pairs alone."""
+    known = (own.as_mesh for own in scene.stage_tables)
+    return tuple(own.name for own in known if own is not None)
+
+
 def _meshes_of(
     scene: Scene, own: StageTable, stage: StageDesign, k: int, slower: float
 ) -> tuple[list[AsMesh], tuple[GearPair, ...]]:

@@ -73,7 +73,7 @@ def rated_meshes(
         own, title = scene.stage_tables[k].as_mesh, f"stage {k + 1}"
         if own is not None:
             title, slower[k] = own.name.title, (own.slower, slower[k][1])
-        known = flaws(pair)
+        known = flaws(pair, "", own.name.gears if own and own.name.suffix else None)
         sentences = [flaw.sentence[0].lower() + flaw.sentence[1:].rstrip(".") for flaw in known]
         try:
             if known and known[0].fatal:

@@ -3,9 +3,9 @@
 import math
 from collections.abc import Iterator, Sequence
 
-from gearopt.formulations.drive.rating import DriveRating
+from gearopt.formulations.drive.rating import DriveRating, MeshName
 from gearopt.formulations.drive.train import STEEL_DENSITY
-from gearopt.physics.gears import MEMBERS, Gear, GearPair
+from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.iso6336.load_factors import Shaft
 from gearopt.physics.loads import torque_ratios
 from gearopt.scenes.drive.rating.gears import Tables
@@ -26,20 +26,28 @@ def unusual(
     tables: Sequence[Tables],
     drivers: Sequence[str],
     shafts: Sequence[Shaft | None],
+    named: Sequence[MeshName],
 ) -> Iterator[str]:
-    """Yield sentences on what is unusual about pairs of floats; tables: of their gears."""
-    yield from _modules(pairs, drivers)
+    """Yield sentences on what is unusual about pairs of floats; tables: of their gears.
+
+    named: of drives with planets or rings, of every mesh; else none.
+    """
+    if not named:
+        yield from _modules(pairs, drivers)
+    each = named or [MeshName(stage=k + 1, title="") for k in range(len(pairs))]
     alike = dict[str, list[str]]()
-    for k, (pair, both) in enumerate(zip(pairs, tables, strict=True), 1):
-        yield from _proportions(pair, k)
-        yield from _shifts(pair, k)
-        yield from _on_shaft(pair, shafts[k - 1], k)
-        yield from dict.fromkeys(text for table in both for text in _soft_core(table, pair, k))
-        for member, gear, table in zip(MEMBERS, pair.gears, both, strict=True):
+    for pair, both, shaft, name in zip(pairs, tables, shafts, each, strict=True):
+        yield from _proportions(pair, name.words)
+        yield from _shifts(pair, name)
+        yield from _on_shaft(pair, shaft, name.words)
+        cores = (text for table in both for text in _soft_core(table, pair, name.words))
+        yield from dict.fromkeys(cores)
+        for member, gear, table in zip(name.gears, pair.gears, both, strict=True):
             for text in _of_steel(table, gear):
-                alike.setdefault(text, []).append(f"the {member} of stage {k}")
+                alike.setdefault(text, []).append(f"the {member} of stage {name.stage}")
     for text, gears in alike.items():
-        rest, last = ", ".join(gears[:-1]), gears[-1]
+        *some, last = dict.fromkeys(gears)  # a planet is in two meshes
+        rest = ", ".join(some)
         yield text.format(f"{rest} and {last} are" if rest else f"{last} is")
 
 
@@ -89,64 +97,64 @@ def _modules(pairs: Sequence[GearPair], drivers: Sequence[str]) -> Iterator[str]
             )
 
 
-def _proportions(pair: GearPair, stage: int) -> Iterator[str]:
+def _proportions(pair: GearPair, mesh: str) -> Iterator[str]:
     width, angle = float(pair.face_width), float(pair.pinion.rack.pressure_angle)
     if angle < FLAT:
         yield (
-            f"The normal pressure angle of stage {stage} is {math.degrees(angle):.3g}°: below "
+            f"The normal pressure angle of {mesh} is {math.degrees(angle):.3g}°: below "
             f"{math.degrees(FLAT):.0f}° teeth are undercut and slim, and the laws of the rating "
             "were not made for them."
         )
     over = width / float(pair.pinion.reference_diameter)
     if over > WIDEST:
         yield (
-            f"The face width of stage {stage} is {over:.3g} d1: above {WIDEST:g} little of it "
+            f"The face width of {mesh} is {over:.3g} d1: above {WIDEST:g} little of it "
             "carries, as shafts bend and twist."
         )
     over = width / float(pair.normal_module)
     if over < NARROWEST:
         yield (
-            f"The face width of stage {stage} is {over:.3g} m_n: below {NARROWEST:g} it is too "
+            f"The face width of {mesh} is {over:.3g} m_n: below {NARROWEST:g} it is too "
             "narrow for the laws of the rating, which are those of usual gears."
         )
     overlap = float(pair.overlap_ratio)
     if 0.0 < overlap < 1.0 and (text := f"{overlap:.3g}") != "1":
         yield (
-            f"The overlap ratio of stage {stage} is {text}: below 1 helical gears run "
+            f"The overlap ratio of {mesh} is {text}: below 1 helical gears run "
             "little quieter than spur gears, and still load their bearings axially."
         )
 
 
-def _on_shaft(pair: GearPair, shaft: Shaft | None, stage: int) -> Iterator[str]:
+def _on_shaft(pair: GearPair, shaft: Shaft | None, mesh: str) -> Iterator[str]:
     """Yield where a shaft does not fit its pinion, or K_Hbeta has no figure for it."""
     if shaft is None:
         return
     root, share = float(pair.pinion.root_diameter), shaft.offset / shaft.span
     if shaft.diameter >= root:
         yield (
-            f"The shaft of stage {stage}, {shaft.diameter:.4g} mm, is not thinner than the root "
+            f"The shaft of {mesh}, {shaft.diameter:.4g} mm, is not thinner than the root "
             f"circle of its pinion, {root:.4g} mm."
         )
     if not shaft.overhung and shaft.offset + 0.5 * float(pair.pinion.width) > 0.5 * shaft.span:
         yield (
-            f"The pinion of stage {stage} reaches beyond a bearing: it is "
+            f"The pinion of {mesh} reaches beyond a bearing: it is "
             f"{float(pair.pinion.width):.4g} mm wide, {shaft.offset:.4g} mm off the middle of a "
             f"span of {shaft.span:.4g} mm."
         )
     if share > (most := FARTHEST_OVERHUNG if shaft.overhung else FARTHEST):
         yield (
-            f"The pinion of stage {stage} is {share:.3g} of the span off its middle; figure 13 of "
+            f"The pinion of {mesh} is {share:.3g} of the span off its middle; figure 13 of "
             f"ISO 6336-1, by which K_Hbeta is rated, ends at {most:g}."
         )
 
 
-def _shifts(pair: GearPair, stage: int) -> Iterator[str]:
+def _shifts(pair: GearPair, name: MeshName) -> Iterator[str]:
     """Yield profile shifts beyond those of usual gears."""
-    for member, gear in zip(MEMBERS, pair.gears, strict=True):
+    for member, gear in zip(name.gears, pair.gears, strict=True):
         shift = float(gear.profile_shift)
         if not LEAST_SHIFT <= shift <= LARGEST_SHIFT:
             yield (
-                f"The profile shift of the {member} of stage {stage} is {shift:.3g}: those of "
+                f"The profile shift of the {member} of stage {name.stage} is {shift:.3g}: those of "
                 f"usual gears are from {LEAST_SHIFT:g} to {LARGEST_SHIFT:g}."
             )
 
@@ -165,7 +173,7 @@ def _of_steel(table: GearTable, gear: Gear) -> Iterator[str]:
     asked = table.flank_hardness if steel.hardened else table.hardness
     low, high = steel.hardness
     value = 0.0 if asked is None else asked.value
-    size = min(float(gear.tip_diameter), PLATE * float(gear.width))
+    size = min(abs(float(gear.tip_diameter)), PLATE * float(gear.width))
     reached = steel.hardness_at(size)
     if asked is not None and not low <= value <= high:
         yield (
@@ -179,7 +187,7 @@ def _of_steel(table: GearTable, gear: Gear) -> Iterator[str]:
         )
 
 
-def _soft_core(table: GearTable, pair: GearPair, stage: int) -> Iterator[str]:
+def _soft_core(table: GearTable, pair: GearPair, mesh: str) -> Iterator[str]:
     """Yield where the module is above that to which the core of a steel reaches 25 HRC."""
     steel = chosen(table)
     module = float(pair.normal_module)
@@ -187,6 +195,6 @@ def _soft_core(table: GearTable, pair: GearPair, stage: int) -> Iterator[str]:
         return
     yield (
         f"The core of {table.steel} reaches 25 HRC to a module of {steel.module:g} mm or so, and "
-        f'stage {stage} has {module:.4g} mm: rate it with iso_quality = "ML" unless the core is '
+        f'{mesh} has {module:.4g} mm: rate it with iso_quality = "ML" unless the core is '
         "certified."
     )

@@ -24,6 +24,7 @@ from gearopt.scenes.drive.rating.by_mesh import (
     assembly_flaws,
     by_mesh,
     governing,
+    mesh_names,
     shared,
 )
 from gearopt.scenes.drive.rating.by_mesh import given_design as given_planets
@@ -163,7 +164,9 @@ def _with_gears(
 ) -> Result:
     """The rating of a design with its gears and their flaws, and others of planets."""
     bored = [(s.pinion.bore is not None, s.wheel.bore is not None) for s in scene.stage_tables]
-    geometric = (*others, *tooth_flaws(pairs), *body_flaws(bodies, pairs, bored))
+    named = mesh_names(scene)
+    bodily = dict.fromkeys(body_flaws(bodies, pairs, bored, named))
+    geometric = (*others, *tooth_flaws(pairs, named), *bodily)
     accepted = (flaw.sentence for flaw in geometric if not flaw.misfit)
     rated: DriveRating = typed(DriveRating, known.design["rating"])
     rated = fitted(rated, [flaw.sentence for flaw in geometric if flaw.misfit])
@@ -231,7 +234,7 @@ def with_rating(scene: Scene, result: Result) -> Result:
     held = driven(scene.held(len(design.stages)), design)
     held, pairs, materials = by_mesh(held, design)
     notes = result.report.get("notes", [])
-    if misfits := [flaw.sentence for flaw in tooth_flaws(pairs) if flaw.misfit]:
+    if misfits := [flaw.sentence for flaw in tooth_flaws(pairs, mesh_names(held)) if flaw.misfit]:
         notes = [note for note in notes if note not in misfits]
         result = replace(result, report=result.report | {"misfits": misfits, "notes": notes})
     if scene.rating is None:
@@ -299,8 +302,8 @@ def rating(
     ]
     placed = [of_stage(scene.rating, own).shaft for own in scene.stage_tables]
     shafts = [None if table is None else table.made for table in placed]
-    odd = unusual(pairs, tables, drivers(scene), shafts)
-    return replace(first, flaws=(*_partial_contact(first), *odd))
+    odd = unusual(pairs, tables, drivers(scene), shafts, mesh_names(scene))
+    return replace(first, flaws=(*_partial_contact(first), *dict.fromkeys(odd)))
 
 
 def _partial_contact(rated: DriveRating) -> Iterator[str]:
@@ -310,7 +313,8 @@ def _partial_contact(rated: DriveRating) -> Iterator[str]:
     beyond, b_cal/b = 2/K_Hbeta is loaded. Source: ISO 6336-1:2006, 7.5, method C.
     """
     parts = [
-        f"{100.0 * FULL_CONTACT / row.pinion:.3g} % of the face width of stage {row.stage} "
+        f"{100.0 * FULL_CONTACT / row.pinion:.3g} % of the face width of "
+        f"{by_standard.mesh_words(row.stage)} "
         f"(K_Hbeta {row.pinion:.4g})"
         for by_standard in rated.each
         for row in by_standard.factors
@@ -342,7 +346,7 @@ def _by(
     turned = hands([table.pinion_hand for table in scene.stage] or [None] * len(pairs), drive)
     (efficiency, error), idle = _efficiency(rows, meshes), idlers(scene.stage)
     known = [own.as_mesh for own in scene.stage_tables]
-    named = tuple(own.name for own in known if own is not None)
+    named = mesh_names(scene)
 
     def title(mesh: int) -> str:
         return named[mesh - 1].title if named else f"stage {mesh}"

@@ -124,15 +124,18 @@ def body_flaws(
     blanks: Sequence[tuple[Blank, Blank]],
     pairs: Sequence[GearPair],
     bored: Sequence[tuple[bool, bool]] = (),
+    named: Sequence[Any] = (),
 ) -> Iterator[Flaw]:
     """Yield flaws of the bodies of a design, of floats: rims and bores that have no room.
 
     bored: of which gears (pinion and wheel of every stage) the file has the bore. One that is as
-    wide as the root circle is a misfit there; a bore of all gears leaves small ones solid.
+    wide as the root circle is a misfit there; a bore of all gears leaves small ones solid. named:
+    the `MeshName` of each, by default those of stages.
     """
     for k, (both, pair) in enumerate(zip(blanks, pairs, strict=True)):
-        for i, (member, shape, gear) in enumerate(zip(MEMBERS, both, pair.gears, strict=True)):
-            name, body = f"{member} of stage {k + 1}", shape.body(gear)
+        called, stage = (named[k].gears, named[k].stage) if named else (MEMBERS, k + 1)
+        for i, (member, shape, gear) in enumerate(zip(called, both, pair.gears, strict=True)):
+            name, body = f"{member} of stage {stage}", shape.body(gear)
             root = float(gear.root_diameter)
             if shape.bore and not body.bore:
                 text = (
