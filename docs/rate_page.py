@@ -356,15 +356,16 @@ those of pinion and wheel. Of another idler rate each mesh as a pair of its own,
 
 A `[[stage]]` of `type = "planetary"` has `sun_teeth`, `planet_teeth`, `ring_teeth` and `planets`,
 one of `type = "internal"` `pinion_teeth` and `ring_teeth`; tables `[stage.sun]`, `[stage.planet]`
-and `[stage.ring]` stand for those of pinion and wheel. Shifts that are not given follow the rule
-of [drives](drive.md). Every mesh is rated by ISO 6336 with every factor (rows of a result then
-count meshes, which `named` lists), at its part of the torque and the speed against the carrier;
-the power capacity is that of the drive. K_γ that is not given is by the number of planets,
-unverified. Planets that cannot be equally spaced, or touch, do not fit; what an internal mesh
-breaks of its limits is named. Efficiency counts the power that rolls alone. The intermediate
-stage of a 5 MW gearbox (`problems/wind_planetary_stage.toml`) has the Y_F, Y_S, Z_H, Z_ε, ε_α and
-α_wt of a printed report, with its load factors its stresses, and its masses, 379.7, 880.3 and
-2,712.3 kg, within 0.02 %.
+and `[stage.ring]` stand for those of pinion and wheel. Shifts that are not given follow the rule of
+[drives](drive.md). Every mesh is rated by ISO 6336 with every factor (rows of a result then count
+meshes, which `named` lists), at its part of the torque and the speed against the carrier; the power
+capacity is that of the drive. K_γ that is not given is by the number of planets, unverified.
+Factors of `[stage.given_iso6336]` that a mesh has one of may have two values, of sun and planet and
+of planet and ring: `K_Hbeta = [2.06, 1.15]`. Planets that cannot be equally spaced, or touch, do
+not fit; what an internal mesh breaks of its limits is named. Efficiency counts the power that rolls
+alone. The intermediate stage of a 5 MW gearbox (`problems/wind_planetary_stage.toml`) has the Y_F,
+Y_S, Z_H, Z_ε, ε_α and α_wt of a printed report, with its load factors its stresses, and its masses,
+379.7, 880.3 and 2,712.3 kg, within 0.02 %.
 
 ## Drives that increase the speed
 

@@ -8,6 +8,8 @@ import pytest
 
 import gearopt
 from gearopt.errors import SceneError
+from gearopt.report.kinds.drive.rating_words import _in_stages
+from gearopt.scenes.drive.notes import assumptions
 
 PROBLEMS = Path(__file__).parents[3] / "problems"
 STAGE = PROBLEMS / "planetary_stage.toml"
@@ -46,21 +48,33 @@ def test_a_published_stage_is_met_factor_by_factor(solved):
     assert first["pitch_line_velocity_m_per_s"] == pytest.approx(5.03, abs=5e-3)  # at d_w1
 
 
-@pytest.mark.parametrize(
-    ("k_h", "k_f", "mesh", "contact", "bending"),
-    [
-        (2.06, 1.94, 1, (1071.17, 994.13), (209.38, 210.14)),
-        (1.15, 1.14, 2, (404.76, 404.76), None),
-    ],
-)
-def test_its_stresses_with_the_load_factors_of_the_report(k_h, k_f, mesh, contact, bending):
-    given = {"K_v": 1.06, "K_Hbeta": k_h, "K_Fbeta": k_f}
+def test_its_stresses_with_the_load_factors_of_the_report():
+    given = {"K_v": 1.06, "K_Hbeta": [2.06, 1.15], "K_Fbeta": [1.94, 1.14]}
     changes = {f"stage[1].given_iso6336.{name}": value for name, value in given.items()}
     gears = gearopt.rate(WIND, changes).design["rating"]["gears"]
-    pair = [gear for gear in gears if gear["stage"] == mesh]
-    assert [g["contact_stress_MPa"] for g in pair] == pytest.approx(contact, rel=4e-3)
-    if bending:
-        assert [g["bending_stress_MPa"] for g in pair] == pytest.approx(bending, rel=6e-3)
+    contact = [g["contact_stress_MPa"] for g in gears]
+    assert contact == pytest.approx([1071.17, 994.13, 404.76, 404.76], rel=4e-3)
+    bending = [g["bending_stress_MPa"] for g in gears[:2]]
+    assert bending == pytest.approx([209.38, 210.14], rel=6e-3)
+
+
+@pytest.mark.parametrize(
+    ("file", "change", "words"),
+    [
+        (WIND, {"rating.iso6336.given": {"K_v": [1.1, 1.2]}}, r"given\.K_v = .*two meshes"),
+        (WIND, {"stage[1].given_iso6336": {"K_gamma": 1.2}}, "Write mesh_load_factor"),
+        (WIND, {"stage[1].given_iso6336": {"K_v": [1.1, 1.1, 1]}}, "sun and planet, planet and"),
+        (STAGE, {"rating.iso6336.given": {"K_gamma": 1.2}}, r"mesh_load_factor: is missing"),
+        (
+            PROBLEMS / "iso_tr_6336_30.toml",
+            {"stage[1].given_iso6336": {"K_v": [1.1, 1.2]}},
+            r"K_v = .*planetary.*Remove it",
+        ),
+    ],
+)
+def test_factors_of_two_meshes_are_those_of_a_planetary_stage(file, change, words):
+    with pytest.raises(SceneError, match=words):
+        gearopt.load(file, change)
 
 
 def given(stage, asked):
@@ -199,3 +213,41 @@ def test_planets_that_do_not_fit_a_given_stage_are_named():
     rated = gearopt.rate(WIND, {"stage[1].planets": 4, "stage[1].mesh_load_factor": 1.25})
     assert not rated.design["rating"]["safe"]
     assert any("multiple of its 4 planets" in text for text in rated.design["rating"]["misfits"])
+
+
+def test_sentences_name_the_gears_of_a_set_and_its_stage():
+    changes = {"stage[1].face_width": "1100 mm", "stage[1].planet.profile_shift": 0.6}
+    rating = gearopt.rate(WIND, changes | {"stage[1].planet.bore": "760 mm"}).design["rating"]
+    said = [*rating["misfits"], *rating["flaws"]]
+    assert not [text for text in said if "stage 2" in text or "pinion" in text]
+    for words in (
+        "The teeth of sun and planet of stage 1 do not fit",
+        "The face width of sun and planet of stage 1 is 2.91 d1",
+        "% of the face width of planet and ring of stage 1",
+        "The bore of the planet of stage 1",
+    ):
+        assert sum(words in text for text in said) == 1, words
+    assert len(said) == len(set(said))
+
+
+def test_words_of_a_drive_of_planets():
+    """No larger gear drives where the carrier does; no bores where there are none."""
+    words = " ".join(assumptions(gearopt.load(PROBLEMS / "wind_gearbox.toml")))
+    assert "driven in stages 1 and 2 by the carrier, in stage 3 by the wheel" in words
+    assert "The gears of pairs are external" in words and "Volumes of pairs are" in words
+    words = " ".join(assumptions(gearopt.load(STAGE)))
+    assert "bores" not in words and "the members named input drive" in words
+
+
+@pytest.mark.parametrize(
+    ("where", "words"),
+    [
+        (["1, a", "1, b"], "in stage 1 (a; b): "),
+        (["1, a", "1, b", "2, a", "2, b", "3"], "in all planetary meshes and stage 3: "),
+        (["1, a", "2, a"], "in stage 1 (a) and stage 2 (a): "),
+        (["3", "4"], "in stages 3 and 4 "),
+        ([], ""),
+    ],
+)
+def test_meshes_of_unverified_factors_are_named_together(where, words):
+    assert _in_stages(where, ["1, a", "1, b", "2, a", "2, b"]) == words

@@ -22,6 +22,7 @@ from gearopt.scenes.drive.rating.materials import check_materials, choices
 from gearopt.scenes.drive.rating.options import of_stage, option
 from gearopt.scenes.drive.tables.blanks import blank
 from gearopt.scenes.drive.tables.drive import ShiftTable, StageTable
+from gearopt.scenes.drive.tables.iso6336 import of_meshes
 from gearopt.scenes.drive.tables.planetary import (
     INTERNAL,
     OF_INTERNAL,
@@ -75,6 +76,12 @@ def with_gears_named(stages: tuple[StageTable, ...]) -> tuple[StageTable, ...]:
             kind = "a stage of external gears" if own.type not in OF_PAIRS else f'"{own.type}"'
             rule = f"is not of {kind}" if own.type in OF_PAIRS else f"needs {_kinds(name)}"
             raise refuse(rule, at=(k, name), action="remove")
+        for name in of_meshes(own.given_iso6336) if own.type != PLANETARY else ():
+            rule = 'has values of two meshes, which a stage of type = "planetary" has'
+            raise refuse(rule, at=(k, "given_iso6336", name), action="remove")
+        if own.type == PLANETARY and "K_gamma" in own.given_iso6336.factors():
+            tell = "Write mesh_load_factor in the [[stage]]"
+            raise refuse("has another name here", tell, (k, "given_iso6336", "K_gamma"), "tell")
         if own.type == PLANETARY:
             own = copied(own, {"pinion": gear_of(own.sun), "wheel": _bent(own)})
             own = copied(own, {"pinion_teeth": own.sun_teeth, "wheel_teeth": own.ring_teeth})
@@ -194,6 +201,10 @@ def _check_teeth(scene: "Scene", own: StageTable, k: int) -> None:
             if count and count not in SHARING_RULES[SHARING].values:
                 rule = f"is missing: {count} planets have no K_gamma by default"
                 raise refuse(rule, 1.1, ("stage", k, "mesh_load_factor"), "sample")
+        of_all = scene.rating and scene.rating.iso6336.given.factors().get("K_gamma")
+        if own.type == PLANETARY and of_all:
+            rule = "is missing beside K_gamma of [rating.iso6336.given], which is not of planets"
+            raise refuse(rule, of_all, ("stage", k, "mesh_load_factor"), "sample")
     if own.equally_spaced is False and own.mesh_order in ("simultaneous", "sequential"):
         rule = "is of equally spaced planets"
         raise refuse(rule, at=("stage", k, "mesh_order"), action="remove")
@@ -326,7 +337,8 @@ def planet_assumptions(scene: "Scene") -> Iterator[str]:
         )
         yield (
             "Meshes of planets are rated against the carrier, with the torque over their number "
-            "times K_γ; K_Hβ is that of pairs, without pins and carrier."
+            "times K_γ. K_Hβ takes sun and planets for pinions on shafts of their own, without "
+            "pins and carrier: where the alignment is known, give K_Hbeta for both meshes."
         )
 
 
@@ -341,13 +353,17 @@ def meshes(own: StageTable, count: int) -> tuple[StageTable, ...]:
     """Tables of the meshes of a stage, with their load cycles and K_gamma; count: of planets."""
     if not count:
         return (own,)
-    given = copied(own.given_iso6336, {"K_gamma": load_factor(own, count)})
-    more: dict[str, Any] = {"given_iso6336": given}
+    given, shared = own.given_iso6336, {"K_gamma": load_factor(own, count)}
+    names = of_meshes(given)
+    outer, second = (
+        {"given_iso6336": copied(given, {n: getattr(given, n)[k] for n in names} | shared)}
+        for k in (0, 1)
+    )
     sun, ring = (copied(gear_of(gear), {"contacts": count}) for gear in (own.sun, own.ring))
     planet = _bent(own)
     return (
-        copied(own, more | {"pinion": sun, "wheel": planet}),
-        copied(own, more | {"pinion": planet, "wheel": ring}),
+        copied(own, outer | {"pinion": sun, "wheel": planet}),
+        copied(own, second | {"pinion": planet, "wheel": ring}),
     )
 
 

@@ -117,7 +117,7 @@ def _for_example(item: Reads, value: Any) -> Any:
         raise refuse(context["rule"], item.example, action="sample") from None
 
 
-def each_gear(item: Reads) -> Reads:
+def each_gear(item: Reads, members: str = "[pinion, wheel]") -> Reads:
     """Read [pinion, wheel], or one item that means both, as a tuple."""
 
     def read(value: Any, example: Any) -> tuple[Any, Any]:
@@ -129,7 +129,7 @@ def each_gear(item: Reads) -> Reads:
         right, rule = mended(item, value[:2])
         if len(value) != 2:
             both = None if None in right else (right * 2)[:2] or None
-            raise refuse("is not one value nor a list [pinion, wheel]", both)
+            raise refuse(f"is not one value nor a list {members}", both)
         if rule:
             raise refuse(f"has a value that {rule}", None if None in right else right)
         return item.reader(value[0], item.example), item.reader(value[1], item.example)
@@ -160,6 +160,18 @@ def either(names: dict[str, Any], item: Reads) -> Reads:
 
     items = {"type": "array", "items": item.schema, "minItems": 1}
     return Reads(read, next(iter(names)), {"anyOf": [{"enum": list(names)}, items]})
+
+
+def each_mesh(item: Reads) -> Reads:
+    """Read one item, as it is, or one for each mesh of a planetary stage, as a tuple."""
+    both = each_gear(item, "[sun and planet, planet and ring]")
+
+    def read(value: Any, example: Any) -> Any:
+        if isinstance(value, list | tuple):
+            return both.reader(value, both.example)
+        return item.reader(value, example)
+
+    return Reads(read, item.example, both.schema)
 
 
 def several(item: Reads, example: Any, in_order: bool = False, single: bool = False) -> Reads:

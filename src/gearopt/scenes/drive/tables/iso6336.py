@@ -3,7 +3,7 @@
 from fractions import Fraction
 from typing import Annotated, Any
 
-from pydantic import Field, create_model
+from pydantic import Field, create_model, model_validator
 
 from gearopt.physics.iso6336.accuracy import TOLERANCES
 from gearopt.physics.iso6336.case import EDITIONS
@@ -13,8 +13,17 @@ from gearopt.physics.iso6336.load_factors import HELIX_MODIFICATIONS
 from gearopt.physics.iso6336.materials import CORES, MATERIALS, QUALITIES
 from gearopt.physics.iso6336.tooth_form import SHIFTS
 from gearopt.scenes.drive.tables.given import Given
-from gearopt.scenes.reading.fields import Table, advised, choice, number, quantity, truth, whole
-from gearopt.scenes.reading.lists import each_gear
+from gearopt.scenes.reading.fields import (
+    Table,
+    advised,
+    choice,
+    number,
+    quantity,
+    refuse,
+    truth,
+    whole,
+)
+from gearopt.scenes.reading.lists import each_gear, each_mesh
 from gearopt.units import Quantity
 
 NAMES = {  # of the factors, as ISO 6336 has them
@@ -93,11 +102,13 @@ OIL = advised(
 
 
 def _field(symbol: str) -> Any:
-    """Return the field of a factor: a value, or one for each gear."""
+    """Return the field of a factor: a value, or one for each gear, or mesh of planets."""
     reads = LOAD if symbol in LOADS else READS[CLAUSES[symbol][1]]
     kind: Any = Fraction if CLAUSES[symbol][1] == "" else Quantity
     if symbol in PAIRED:
         kind, reads = tuple[kind, kind], each_gear(reads)
+    else:
+        kind, reads = kind | tuple[kind, kind], each_mesh(reads)
     words = NAMES[symbol] + OF.get(symbol, "")
     return (Annotated[kind | None, reads], Field(None, description=words[0].upper() + words[1:]))
 
@@ -105,9 +116,16 @@ def _field(symbol: str) -> Any:
 IsoGiven = create_model(
     "IsoGiven",
     __base__=Given,
-    __doc__=Given.__doc__,
+    __doc__=f"{Given.__doc__} Those of a mesh may have two values in a planetary stage: [sun and "
+    "planet, planet and ring].",
     **{symbol: _field(symbol) for symbol in CLAUSES if symbol != "K_A"},
 )
+
+
+def of_meshes(given: Table) -> list[str]:
+    """Factors that are given with a value for each mesh of a planetary stage."""
+    held = ((name, getattr(given, name)) for name in CLAUSES if name in type(given).model_fields)
+    return [name for name, value in held if name not in PAIRED and isinstance(value, tuple)]
 
 
 class IsoGearKeys(Table):
@@ -193,3 +211,10 @@ class IsoTable(Table):
     given: IsoGiven = Field(
         default_factory=IsoGiven, description="Factors of all stages, instead of computed ones"
     )
+
+    @model_validator(mode="after")
+    def _of_all_stages(self) -> "IsoTable":
+        for name in of_meshes(self.given):
+            rule = "has values of two meshes, which are of [stage.given_iso6336]"
+            raise refuse(rule, at=("given", name), action="remove")
+        return self
