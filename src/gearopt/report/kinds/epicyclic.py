@@ -92,8 +92,9 @@ def flow(design: EpicyclicDesign) -> str:
     lost = sum(mesh.lost for mesh in design.meshes)
     return (
         f"Of the input's power {100.0 * lost:.3g} % is lost in meshes; the most rolling power, "
-        f"{most.rolling_power:.3g} times the input's, has the mesh of {most.gears}. Torques are "
-        "those from outside: of a member that gives power with the other sign than its speed."
+        f"{most.rolling_power:.3g} times the input's, has the mesh of {most.gears}. Torques act "
+        "on the members from outside: where torque and speed have one sign, power flows in, else "
+        "out."
     )
 
 

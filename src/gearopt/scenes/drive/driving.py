@@ -43,6 +43,16 @@ def may_drive(scene: "Scene") -> tuple[str, ...]:
 def driving_words(scene: "Scene") -> list[str]:
     """A sentence on what drives, where that may be the wheel."""
     members = may_drive(scene)
+    if members == ("wheel",) and any(own.epicyclic for own in scene.stage):
+        places = dict[str, list[int]]()
+        for k, own in enumerate(scene.stage, 1):
+            outer = "ring" if own.held == "carrier" or not own.counts[0] else "carrier"
+            places.setdefault(outer if own.epicyclic else "wheel", []).append(k)
+        stages = (
+            f"in stage{'s' * (len(ks) > 1)} {' and '.join(map(str, ks))} by the {member}"
+            for member, ks in places.items()
+        )
+        return [f"Every stage increases the speed, driven {', '.join(stages)}."]
     if members == ("wheel",):
         return ["Every stage increases the speed: its wheel, the larger gear, drives."]
     if len(members) > 1:

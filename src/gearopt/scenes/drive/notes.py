@@ -9,6 +9,7 @@ from gearopt.optimise.result import Result
 from gearopt.physics.gears import ISO_53_A, MEMBERS
 from gearopt.physics.geometry.profile_shift import ROOT_SAFETY
 from gearopt.scenes.drive.driving import driving_words
+from gearopt.scenes.drive.planetary import every_mesh
 from gearopt.scenes.drive.rating.assumptions import (
     every_gear,
     pinions_in_box,
@@ -196,17 +197,21 @@ def _bodies(scene: Scene) -> str:
     stages = scene.stage_tables
     pairs = [own for own in stages if not own.epicyclic]
     if not pairs:
-        return "Volumes are those of solid cylinders, masses those without the bores of the file"
+        gears = [gear for own in every_mesh(stages) for gear in (own.pinion, own.wheel)]
+        bored = any(with_shared(gear, scene.gears).bore for gear in gears)
+        less = ", masses those without the bores of the file" if bored else ""
+        return f"Volumes are those of solid cylinders, of rings those of tubes{less}"
+    of = "Volumes" if len(pairs) == len(stages) else "Volumes of pairs"
     tables = [with_shared(getattr(own, m), scene.gears) for own in pairs for m in MEMBERS]
     if all(blank(table, None).solid and not table.web_thickness for table in tables):
         if any(map(scene.shifted, stages)):
             return (
-                "Volumes are those of solid cylinders of face width; where shifts are "
+                f"{of} are those of solid cylinders of face width; where shifts are "
                 "chosen their diameter is d + 2 x m_n, else the reference one"
             )
-        return "Volumes are those of solid cylinders of reference diameter and face width"
+        return f"{of} are those of solid cylinders of reference diameter and face width"
     return (
-        "Volumes are those of solid cylinders of reference diameter; masses are those of rims, "
+        f"{of} are those of solid cylinders of reference diameter; masses are those of rims, "
         "webs and hubs, with the teeth as a ring between root and reference circle"
     )
 
@@ -254,7 +259,7 @@ def _teeth(scene: Scene) -> list[str]:
                 f"from {source}, with both tips shortened alike"
             )
     ends = "torques are those without losses in mesh and bearings"
-    what = "The gears" if len(pairs) == len(scene.stage_tables) else "Those of pairs"
+    what = "The gears" if len(pairs) == len(scene.stage_tables) else "The gears of pairs"
     sentences = [f"{what} are external cylindrical ones {shifts}; {ends}."]
     if not pairs:
         sentences = [f"{ends.capitalize()}."]

@@ -32,8 +32,8 @@ TRUE = (
 )
 FLOW = (
     "Speeds, torques and powers are without losses, of each stage with the turning of its input "
-    "above 0; torques are those from outside, so that of a member that gives power torque and "
-    "speed have other signs."
+    "above 0. Torques act on the members from outside: where torque and speed have one sign, power "
+    "flows in, else out."
 )
 PINS = (
     "The power that rolls in the meshes is the torque of the sun times its speed against the "

@@ -362,15 +362,27 @@ def _unverified(rating: DriveRating, named: bool) -> list[str]:
         alike.setdefault(known, []).append(EXPLAINED.get(symbol, greek(symbol)))
     if not alike:
         return []
-    parts = [f"{_in_stages(known)}{series_of(symbols)}" for known, symbols in alike.items()]
+    sets = [mesh.title.removeprefix("stage ") for mesh in rating.named if mesh.suffix]
+    parts = [f"{_in_stages(known, sets)}{series_of(symbols)}" for known, symbols in alike.items()]
     of = f" by {rating.by}" if named else ""
     return [f"Unverified{of} (one source, or no published value): {'; '.join(parts)}."]
 
 
-def _in_stages(stages: Sequence[str]) -> str:
-    if not all(stage.isdigit() for stage in stages):  # meshes of stages with planets
-        return f"in {' and in '.join(f'stage {stage}' for stage in stages)}: "
-    return f"in stage{'s' * (len(stages) > 1)} {counted(stages)} " if stages else ""
+def _in_stages(stages: Sequence[str], sets: Sequence[str]) -> str:
+    """Stages where symbols are unverified; sets: all meshes of planets."""
+    plain = [stage for stage in stages if stage.isdigit()]
+    words = [f"stage{'s' * (len(plain) > 1)} {counted(plain)}"] if plain else []
+    rest = [stage for stage in stages if stage not in plain]
+    if not rest:
+        return f"in {words[0]} " if words else ""
+    every = len(sets) > 2 and set(sets) <= set(rest)
+    meshes = [] if not every else ["all planetary meshes"]
+    of_stage = dict[str, list[str]]()
+    for stage in (stage for stage in rest if not (every and stage in sets)):
+        number, _, gears = stage.partition(", ")
+        of_stage.setdefault(number, []).append(gears)
+    meshes += [f"stage {number} ({'; '.join(gears)})" for number, gears in of_stage.items()]
+    return f"in {series_of([*meshes, *words])}: "
 
 
 def greek(text: str) -> str:

@@ -30,7 +30,8 @@ def rating_assumptions(scene: Scene) -> list[str]:
     agma, iso = asked.standard != "iso6336", asked.standard != "agma"
     members = dict.fromkeys(drivers(scene))
     drive = "the gears named drive" if len(members) > 1 else f"the {next(iter(members))}s drive"
-    outer = "" if any(own.epicyclic for own in scene.stage) else "external "
+    external = not any(own.epicyclic for own in scene.stage)
+    drive, outer = (drive, "external ") if external else ("the members named input drive", "")
     sentences = [
         f"The rating is of {outer}cylindrical gears on parallel shafts; {drive}. "
         "Torques and forces are those without losses.",
