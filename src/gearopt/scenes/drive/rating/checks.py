@@ -13,7 +13,7 @@ from gearopt.scenes.drive.rating.iso_material import SOFT_ROOTS, steel
 from gearopt.scenes.drive.rating.materials import Named, choices
 from gearopt.scenes.drive.rating.steels import chosen
 from gearopt.scenes.drive.tables.drive import Gears, Objective, StageTable
-from gearopt.scenes.drive.tables.iso6336 import ISO_KEYS, IsoTable
+from gearopt.scenes.drive.tables.iso6336 import ISO_KEYS, IsoTable, of_meshes
 from gearopt.scenes.drive.tables.rating import (
     MATERIAL,
     OF_STAGE,
@@ -165,6 +165,9 @@ def check_rated(
 ) -> None:
     """Refuse a rating whose gears lack their strength, or whose loads do not fit together."""
     _check_standard(rating, gears, stages)
+    for name in of_meshes(rating.iso6336.given):
+        rule = "has values of two meshes, which are of [stage.given_iso6336]"
+        raise refuse(rule, at=("rating", "iso6336", "given", name), action="remove")
     _check_hands(gears, stages)
     if rating.by_iso6336:
         _check_needed("iso_core", CORELESS, _by_core, gears, stages, materials)

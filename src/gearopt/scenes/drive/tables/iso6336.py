@@ -3,7 +3,7 @@
 from fractions import Fraction
 from typing import Annotated, Any
 
-from pydantic import Field, create_model, model_validator
+from pydantic import Field, create_model
 
 from gearopt.physics.iso6336.accuracy import TOLERANCES
 from gearopt.physics.iso6336.case import EDITIONS
@@ -13,16 +13,7 @@ from gearopt.physics.iso6336.load_factors import HELIX_MODIFICATIONS
 from gearopt.physics.iso6336.materials import CORES, MATERIALS, QUALITIES
 from gearopt.physics.iso6336.tooth_form import SHIFTS
 from gearopt.scenes.drive.tables.given import Given
-from gearopt.scenes.reading.fields import (
-    Table,
-    advised,
-    choice,
-    number,
-    quantity,
-    refuse,
-    truth,
-    whole,
-)
+from gearopt.scenes.reading.fields import Table, advised, choice, number, quantity, truth, whole
 from gearopt.scenes.reading.lists import each_gear, each_mesh
 from gearopt.units import Quantity
 
@@ -211,10 +202,3 @@ class IsoTable(Table):
     given: IsoGiven = Field(
         default_factory=IsoGiven, description="Factors of all stages, instead of computed ones"
     )
-
-    @model_validator(mode="after")
-    def _of_all_stages(self) -> "IsoTable":
-        for name in of_meshes(self.given):
-            rule = "has values of two meshes, which are of [stage.given_iso6336]"
-            raise refuse(rule, at=("given", name), action="remove")
-        return self
