@@ -19,6 +19,7 @@ from gearopt.optimise.result import Result
 from gearopt.report import comparison as comparison_words
 from gearopt.report import front
 from gearopt.report.answer import WAYS, assumed, decided, warnings_of
+from gearopt.report.design_tables import OF_LINES, types
 from gearopt.report.explained import STEEP, of_influences
 from gearopt.report.kinds import pages_of_result
 from gearopt.report.measures import METRIC, SYSTEMS, Measures, gap_percent
@@ -96,6 +97,8 @@ def _design(result: Result) -> list[str]:
         for k, s in enumerate(stages, 1)
         if {MODULE, "pinion_teeth", "wheel_teeth"} <= s.keys()
     ]
+    if types(stages) - {"parallel"}:
+        parts = [{k: v for k, v in part.items() if k not in OF_LINES} for part in parts]
     values = _own(design) if result.scene is None else []
     values = values or next((words for part in parts if (words := _values(part, goal))), [])
     return [*rows, _fitting(values)] if values else rows
