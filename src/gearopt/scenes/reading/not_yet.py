@@ -66,7 +66,7 @@ PLANETARY = (
     "sonnenrad hohlrad planeten planetenzahl planetentraeger steg"
 )
 EPICYCLIC = (
-    'Nearest: type = "planetary" in a [[stage]] of kind = "drive", sized by ratings, or kind = '
+    'Nearest: kind = "drive" with a stage of type = "planetary", sized by ratings, or kind = '
     '"epicyclic", trains by their numbers of teeth'
 )
 MONEY = "cost price costs budget maximum_cost"
@@ -209,6 +209,7 @@ NEAREST["pair"] = NEAREST["drive"] | {
 
 for _kind in NEAREST:
     NEAREST[_kind] = NEAREST[_kind] | {PLANETARY: EPICYCLIC}
+NEAREST["servo"] |= {PLANETARY: "Nearest: a table [planetary], a planetary stage as the gearhead"}
 NEAREST["epicyclic"] = {
     f"{CENTRES} module modules {MATERIAL} {STRESS} {STRENGTH} {SAFETY} power torque load "
     "face_width speed input_speed": "Only numbers of teeth are chosen, and nothing is rated. "
