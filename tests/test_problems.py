@@ -73,6 +73,7 @@ LONG = (
     ),
     "wind_gearbox",
     "planetary_gearhead",
+    "planets_that_do_not_fit",
     "elevator_processes_rated",
     "three_stage_by_both",
     "thousand_in_two_stages",

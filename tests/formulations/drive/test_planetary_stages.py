@@ -55,7 +55,7 @@ def test_drives_with_a_planetary_stage_are_those_of_every_candidate(seed):
     agree(own.some_planetary_drive(seed, 2))
 
 
-@pytest.mark.parametrize("seed", few(range(30), (1,)))
+@pytest.mark.parametrize("seed", few(range(30), (0, 4)))
 def test_pinions_in_rings_are_those_of_every_candidate(seed):
     agree(own.some_internal_drive(seed))
 
