@@ -204,7 +204,7 @@ def test_limits_beside_given_gears_at_a_distance_are_named():
 
 def test_one_reduction_of_planets_is_read_as_a_list_of_it():
     key = "stage[1].planet_teeth_reduction"
-    few = {"stage[1].sun_teeth": 20, "stage[1].planets": 3}
+    few = {"stage[1].sun_teeth": [30, 34], "stage[1].planets": 3}
     alone, listed = (gearopt.solve(STAGE, few | {key: value}) for value in (1, [1]))
     assert alone.design["stages"] == listed.design["stages"]
     assert "output torque" in str(alone) and "centre distances" not in str(alone)  # of one axis
