@@ -36,6 +36,7 @@ from gearopt.physics.geometry.tooth import (
 THIN_TIP = 0.2  # normal modules of tip thickness; 0.3 to 0.4 if case hardened (recommendation)
 LEAST_RATIO = 1.2  # transverse contact ratio below which ISO 6336-1 has no stiffness
 PRINTED = 0.5e-3  # mm, half a unit of the last digit of a centre distance as drawings have it
+PRINTED_SHIFT = 0.5e-4  # half a unit of the fourth digit of profile shifts, as reports have them
 LOOSE = 4.0  # times the recommended least backlash, from which on it is told (a rule of ours)
 ROUNDING = 1e-8  # of the module, as limits of a result are held (`FEASIBLE`)
 INTRUSION = 1e-3  # normal modules by which tips may touch fillets, less than edges are rounded by
@@ -189,7 +190,10 @@ def _backlash(pair: GearPair, of: str) -> list[Flaw]:
             f"; without backlash the centre distance of {abs(pair.centre_distance):.6g} mm asks "
             f"for profile shifts of {shifts_at(pair):.3f} in sum, and the gears have {shifts:.4g}"
         )
-    if backlash < -2.0 * math.tan(pair.working_angle) * PRINTED:
+    of_distance = 2.0 * math.tan(pair.working_angle) * PRINTED
+    normal, module = pair.pinion.rack.pressure_angle, pair.normal_module
+    of_shifts = 4.0 * module * math.tan(normal) * PRINTED_SHIFT if given else 0.0
+    if backlash < -of_distance - of_shifts:
         text = f"The teeth{of} do not fit in: the backlash is {backlash:.3f} mm{given}."
         return [Flaw("no backlash", text, misfit=-backlash / pair.normal_module)]
     if float(normal_backlash(pair)) > LOOSE * least_backlash(pair):
