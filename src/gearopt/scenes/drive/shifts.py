@@ -68,6 +68,10 @@ def check_shift(scene: "Scene", shifted: list[int], lacks: str, asked: str) -> N
             else "Write sum = 0.5 in [shift], or a centre_distance, or remove the table"
         )
         raise refuse(rule, tell, ("shift",), "tell")
+    for name in ("rule", "contact_ratio", "tip_thickness", "specific_sliding"):
+        if name in shift.model_fields_set and any(own.epicyclic for own in scene.stage):
+            rule = "is of stages of external gears alone, and is not kept by planets and rings"
+            raise refuse(rule, at=("shift", name), action="remove")
     for name in ("pinion_shift", "sum"):
         if isinstance(value := getattr(shift, name), Between):
             check_range(scene, value, ("shift", name))

@@ -181,7 +181,8 @@ class StageTable(Loaded, PlanetaryKeys):
     )
     face_width_over_diameter: Proportion = Field(
         None,
-        description=f"{PROPORTION_IS}; without face_width needed, here or in [gears]",
+        description=f"{PROPORTION_IS}; without face_width needed, here or in [gears]; with fixed = "
+        '"sun" over the ring\'s diameter, and needed here',
     )
     face_width_step: Step = Field(None, description=STEP_IS)
     face_width_over_module: OverModule = Field(None, description=OVER_MODULE_IS)
