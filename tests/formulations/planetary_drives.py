@@ -35,7 +35,8 @@ def ways(cutting, counts, fewer, held="ring", **limits):
         for less in fewer:
             planets = Planets(cutting, count, held, less, **limits)
             turns, held_ring = (float(count), 1.0), 0.0 if held == "ring" else float(count)
-            outer = _standard((HARD, BENT), turns, turns, factor)
+            at_once = (-float(count) if held == "sun" else float(count)), 1.0
+            outer = _standard((HARD, BENT), turns, at_once, factor)
             inner = _standard((BENT, HARD), turns[::-1], (1.0, held_ring), factor)
             rated = (
                 InPlanetaryMesh(outer, planets, False, "_of_sun"),
@@ -159,7 +160,8 @@ def pinion_in_ring(cut, module, pinion, ring):
     """Pinion (twice), ring and distance: without backlash at their shifts."""
     t, each = math.atan(math.tan(math.radians(20)) / math.cos(cut.helix_angle)), module
     each = module / math.cos(cut.helix_angle)
-    a, x, outward = each * (ring - pinion) / 2, cut.shifts[1] or 0.0, cut.shifts[1] or 0.0
+    x = max(0.0, not_undercut(cut, t, pinion)) if cut.shifts[1] is None else cut.shifts[1]
+    a, outward = each * (ring - pinion) / 2, x
     w = t
     if cut.shifts[2] is not None:
         outward = -cut.shifts[2]
@@ -201,6 +203,12 @@ def _cut(cut, module, rows):
     return made
 
 
+def not_undercut(cut, t, z):
+    """Least shift of a gear by the basic rack A of ISO 53 without undercut."""
+    deep = 1.25 - 0.38 * (1 - math.sin(math.radians(20))) + 1e-4
+    return deep - z * math.sin(t) ** 2 / (2 * math.cos(cut.helix_angle))
+
+
 def gears_of(cut, module, sun, planet, ring):
     """Sun, planet, ring and distance by the formulas of textbooks, ring with positive teeth."""
     t, each = math.atan(math.tan(math.radians(20)) / math.cos(cut.helix_angle)), module
@@ -210,9 +218,12 @@ def gears_of(cut, module, sun, planet, ring):
     if cut.shifts[0] is None:
         a = (a0 + a1) / 2
         x = (involute(math.acos(a0 * math.cos(t) / a)) - involute(t)) * (sun + planet) / (2 * tan)
-        sine = math.sin(math.radians(20))
-        free = 1.25 - 0.38 * (1 - sine) - sun * math.sin(t) ** 2 / (2 * math.cos(cut.helix_angle))
-        xs = max(x / 2, free)
+        one, other = (not_undercut(cut, t, z) for z in (sun, planet))
+        if one + other > x:
+            x = one + other
+            w = involute_angle(involute(t) + 2 * x * tan / (sun + planet))
+            a = a0 * math.cos(t) / math.cos(w)
+        xs = max(one, min(x / 2, x - other))
         xp = x - xs
     else:
         xs, xp = cut.shifts[:2]
@@ -239,7 +250,7 @@ def fits(way, made, teeth, module):
         if a - one.tip_diameter / 2 - other.root_diameter / 2 < -1e-9 * module:
             return False
     part = 1 / way.count if way.spaced else (teeth // way.count) / teeth
-    return 2 * a * math.sin(math.pi * part) - planet.tip_diameter >= module * (1.0 - 1e-9)
+    return 2 * a * math.sin(math.pi * part) - planet.tip_diameter >= module * (0.5 - 1e-9)
 
 
 def body(gear, width, outside=None):
@@ -282,7 +293,10 @@ def safe(train, way, made, teeth, width, torque):
         pair = GearPair(*(replace(gear, face_width=width) for gear in made[1:3]), -made[3])
         return _meets(pair, load, (HARD, HARD), Practice(grades=(6.0, 6.0)), {})
     g1, g2, g3, a = (*(replace(g, face_width=width) for g in made[:3]), made[3])
-    outer, inner = with_sun(load, n), with_ring(load, n, planet / sun, way.held == "ring")
+    outer, inner = (
+        with_sun(load, n, way.held == "sun"),
+        with_ring(load, n, planet / sun, way.held == "ring"),
+    )
     g3 = replace(g3, outside_diameter=way.cutting.outside and -way.cutting.outside)
     blanks = (*way.cutting.blanks, SOLID)
     pairs = [

@@ -18,6 +18,8 @@ from gearopt.optimise.solve import run
 from gearopt.physics.gears import Cutter
 from gearopt.physics.geometry.contact import free_tip_diameters
 from gearopt.physics.geometry.fillet import is_undercut
+from gearopt.physics.iso6336.case import Practice
+from gearopt.physics.iso6336.stiffness import reduced_mass
 
 PLAIN = brute.least_share
 
@@ -200,3 +202,41 @@ def test_the_speed_of_the_sun_is_against_the_carrier():
     torque, speed = option.planets.slower(pair, True)
     assert (torque, speed) == pytest.approx((2 / 3, 5 / 12))
     assert option.planets.loss(pair) == pytest.approx(5 / 6 * (1 / 18 + 2 / 36 - 1 / 90))
+
+
+def test_gears_that_a_rule_of_shifts_saves_from_undercut_are_candidates():
+    """20/14/49 and 17/17/51, which industry uses: a rack cuts 17.1 teeth at x = 0 (ISO 53 A)."""
+    for sun, planet, ring, count in ((20, 14, 49, 3), (16, 17, 50, 3), (17, 17, 51, 4)):
+        way = own.ways(Cutting(), (count,), (ring - sun - 2 * planet,))[0].planets
+        pair = way.pair(2.0, float(sun), float(ring), 20.0)
+        assert way.possible(sun, sun + ring) and way.room(pair)
+        assert not any(is_undercut(gear) for gear in way.gears(pair)[:2])
+    inner = own.rings(Cutting())[0].planets
+    assert inner.room(inner.pair(2.0, 15.0, 60.0, 20.0))
+
+
+def test_a_ring_too_thin_for_a_factor_is_no_design():
+    """ISO 6336-3 has no Y_B up to 1.75 m_n: bounds refuse such a ring, as its rating does."""
+    rng, helix = np.random.default_rng(5), 0.0
+    for cut in (Cutting(rim=1.5), Cutting(outside=190.0)):
+        (option,) = own.ways(cut, (3,), (0,))
+        pair = some_pairs("ring", 100, rng, helix)
+        standard = option.standards[1]
+        ready = standard.prepared(pair)
+        rows = standard.rows(ready, pair, (1e4,) * 2, (100.0,) * 2, (1.4, 1.1))
+        used_there = rows.used(pair.face_width, pair.face_width)
+        rim = (pair.normal_module, option.planets.gears(pair)[2])
+        thin = (rim[1].root_diameter - rim[1].outside_diameter) / 2 / rim[0] <= 1.75
+        assert thin.any() and not np.isfinite(used_there[thin]).any()
+
+
+def test_a_sun_that_the_casing_holds_is_as_heavy_as_a_ring_that_it_holds():
+    """m_red of planet and held gear is m_pla: K_v then has no mass of the sun."""
+    option = own.ways(Cutting(), (3,), (0,), "sun")[0]
+    pair = option.planets.mesh(option.planets.pair(2.0, 20.0, 80.0, 20.0), False)
+    densities, bores = (7.83e-9,) * 2, (0.0, 0.0)
+    mean = [(g.tip_diameter + g.root_diameter) / 2 for g in pair.gears]
+    planet = math.pi / 8 * densities[1] * mean[1] ** 4 / pair.wheel.base_diameter**2
+    meshes = option.standards[0].standard.practice.meshes
+    assert reduced_mass(pair, densities, bores, meshes) == pytest.approx(planet)
+    assert Practice(meshes=meshes).bending(1.0) == Practice(meshes=(3.0, 1.0)).bending(1.0)

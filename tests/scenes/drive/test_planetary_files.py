@@ -97,7 +97,8 @@ def test_what_is_found_is_rated_alike_when_it_is_given(held, ratio, turns):
     asked["gears"]["face_width_over_diameter"] = [0.1, 0.5]
     asked["stage"] = [{"type": "planetary", "fixed": held, "planets": 3}]
     if held == "sun":
-        asked["stage"][0] |= {"sun_teeth": [20, 40], "ring_teeth": [70, 110]}
+        own = {"sun_teeth": [20, 40], "ring_teeth": [70, 110]}
+        asked["stage"][0] |= own | {"face_width_over_diameter": [0.1, 0.5]}
     found = gearopt.solve(asked)
     (stage,), rating = found.design["stages"], found.design["rating"]
     assert found.status == "optimal" and rating["safe"]
@@ -252,3 +253,52 @@ def test_words_of_a_drive_of_planets():
 )
 def test_meshes_of_unverified_factors_are_named_together(where, words):
     assert _in_stages(where, ["1, a", "1, b", "2, a", "2, b"]) == words
+def test_printed_digits_of_shifts_fit_a_printed_distance():
+    """The report has x_p = 0.5039, of which the fourth digit is rounded, and a = 584 mm."""
+    printed = gearopt.rate(WIND, {"stage[1].planet.profile_shift": 0.5039}).design["rating"]
+    assert not printed.get("misfits")
+    apart = gearopt.rate(WIND, {"stage[1].planet.profile_shift": 0.5045}).design["rating"]
+    assert any("do not fit in" in text for text in apart["misfits"])
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("contact_ratio", 1.75), ("specific_sliding", 0.5), ("rule", "after Henriot")],
+)
+def test_limits_of_shifts_that_planets_do_not_keep_are_refused(key, value):
+    with pytest.raises(SceneError, match=rf"shift\.{key} .* external gears alone"):
+        gearopt.solve(STAGE, {"shift.sum": 0.3, f"shift.{key}": value})
+
+
+def test_a_face_width_over_the_ring_is_not_that_of_all_gears():
+    with pytest.raises(SceneError, match=r"stage\[1\]\.face_width_over_diameter.*ring's"):
+        gearopt.solve(STAGE, {"stage[1].fixed": "sun", "stage[1].ring_teeth": [70, 110]})
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"duty.ratio": 1.9}, "1 + z_r/z_s and a ring with room for planets"),
+        ({"limits.wheel_teeth": [20, 40]}, "20 to 40 teeth of the ring"),
+        ({"stage[1].ring.cutter_teeth": 400}, "more teeth than its cutter, 400"),
+        ({"stage[1].sun_teeth": 20, "stage[1].mesh_order": "simultaneous"}, "z_s (mesh_order)"),
+        ({"stage[1].planets": 6, "stage[1].ring_teeth": [90, 200]}, "neighbouring planets"),
+    ],
+)
+def test_why_no_teeth_fit_is_said(changes, words):
+    asked = tomllib.loads(STAGE.read_text())
+    del asked["duty"]["output_speed"], asked["x-expected"]
+    asked["duty"]["ratio"] = 5.25
+    asked["stage"][0]["planets"] = 3
+    result = gearopt.solve(asked, changes)
+    assert result.status == "infeasible" and words in result.message
+
+
+def test_a_thin_ring_is_left_out_of_a_search_within_a_given_outside():
+    """180 mm leave the lightest rings no rim of 1.75 m_n; the answer keeps it."""
+    asked = tomllib.loads(STAGE.read_text())
+    asked["stage"][0] |= {"planets": 3, "ring": {"outside_diameter": "180 mm"}}
+    result = gearopt.solve(asked)
+    (stage,) = result.design["stages"]
+    root = stage["ring_root_diameter_mm"]
+    assert 180.0 - root > 2 * 1.75 * stage["normal_module_mm"]

@@ -7,7 +7,7 @@ way of making them. A pinion in a ring has z1 and z2 of both, and no planets.
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -20,12 +20,16 @@ from gearopt.physics.gears import ISO_53_A, RIM, Cutter, Gear, GearPair, Rack, r
 from gearopt.physics.geometry.internal import margins
 from gearopt.physics.geometry.involute import angle_at_distance, shift_sum, working_pressure_angle
 from gearopt.physics.geometry.tooth import tip_clearances
+from gearopt.physics.iso6336.bending_factors import THIN_RING
+from gearopt.physics.iso6336.case import ring_rim
 
 HELD = ("ring", "sun", "carrier")
 ORDERS = ("any", "simultaneous", "sequential", "hunting")
 SUN, PLANET, RING = 0, 1, 2
 ACCEPTED = ("radial_assembly", "cutter_infeed")  # gears are put together, and cut, axially
 LARGE = 1e6  # teeth: no limit
+NO_UNDERCUT = 1e-4  # normal modules, by which shifts exceed that of the edge of an undercut
+LEAST_PLANET = 5  # teeth
 ROUNDING = 1e-9  # of margins [normal modules]
 Three = tuple[Any, Any, Any]
 
@@ -40,10 +44,11 @@ class Cutting:
     modules] of the ring below its roots, or outside [mm], its diameter; blanks of sun and planet;
     allowances A_sn [mm] of gears that are given.
 
-    The rule: a is midway between the reference distances of both meshes; x_s is half of x_s + x_p,
-    and no less than keeps the sun from undercut; sun and planet are shortened by k = y - x_s - x_p,
-    y m_n being by how much a exceeds their reference distance. x_r leaves no backlash, and tips of
-    the ring reach no lower than the form circle of the planets.
+    The rule: a is midway between the reference distances of both meshes, or as much larger as
+    keeps sun and planet from undercut; x_s is half of x_s + x_p, as far as neither is undercut, of
+    a given sum that is too small the planet alone; sun and planet are shortened by k = y - x_s -
+    x_p, y m_n being by how much a exceeds their reference distance. x_r leaves no backlash, and
+    tips of the ring reach no lower than the form circle of the planets.
     """
 
     helix_angle: float = 0.0
@@ -63,6 +68,11 @@ class Cutting:
         """Whether bodies of all modules have one shape."""
         return self.outside is None and all(blank.solid for blank in self.blanks)
 
+    @property
+    def may_be_thin(self) -> bool:
+        """Whether the rim of a ring may be too thin for a Y_B."""
+        return self.outside is not None or self.rim <= THIN_RING
+
     @np.errstate(invalid="ignore", divide="ignore")
     def gears(self, module: Any, teeth: Three, width: Any) -> tuple[Gear, Gear, Gear, Any]:
         """Sun, planet and ring of numbers of teeth above 0, and their distance [mm].
@@ -76,15 +86,17 @@ class Cutting:
         total = self._sum_of_given
         if self.distance is not None:
             distance = self.distance + 0.0 * reference
-        elif total is not None:
-            working = working_pressure_angle(total, sun + planet, pressure, transverse)
-            distance = reference * math.cos(transverse) / np.cos(working)
-        else:
+        elif total is None:
             distance = 0.5 * (reference + inner)
         if total is None:
             working = angle_at_distance(reference, transverse, distance)
             total = shift_sum(working, sun + planet, pressure, transverse)
-        first, second = self._shares(total, sun)
+            if self.distance is None:
+                total = np.fmax(total, self._least(SUN, sun) + self._least(PLANET, planet))
+        if self.distance is None:
+            working = working_pressure_angle(total, sun + planet, pressure, transverse)
+            distance = reference * math.cos(transverse) / np.cos(working)
+        first, second = self._shares(total, sun, planet)
         shorter = (distance - reference) / module - first - second
         third = self._inside(module, planet, ring, distance, second)
         tips = shorter, shorter, self._ring_tip(module, planet, ring, distance, second, third)
@@ -96,12 +108,15 @@ class Cutting:
     def pinion_in_ring(self, module: Any, teeth: Three, width: Any) -> tuple[Gear, Gear, Any]:
         """Pinion and ring of numbers of teeth above 0, and their distance [mm].
 
-        Shifts that are not given are 0 of the pinion, and of the ring as the distance asks.
+        Shifts that are not given are 0 of the pinion, or what keeps it from undercut, and of the
+        ring as the distance asks.
         """
         _, pinion, ring = teeth
         pressure, transverse = self.angles
         reference = 0.5 * module / math.cos(self.helix_angle) * (ring - pinion)
-        first, second = self.shifts[PLANET] or 0.0, self.shifts[RING]
+        first, second = self.shifts[PLANET:]
+        if first is None:
+            first = np.maximum(self._least(PLANET, pinion), 0.0)
         if self.distance is not None:
             distance = self.distance + 0.0 * reference
         elif second is None:
@@ -159,18 +174,25 @@ class Cutting:
             return first + second
         return self.shift_sum
 
-    def _shares(self, total: Any, sun: Any) -> tuple[Any, Any]:
+    def _shares(self, total: Any, sun: Any, planet: Any) -> tuple[Any, Any]:
         """Shifts of sun and planet of their sum."""
         first, second, _ = self.shifts
         if first is not None:
             return first, total - first if second is None else second
         if second is not None:
             return total - second, second
-        rack, (pressure, transverse) = self.racks[SUN], self.angles
-        depth = rack.dedendum - rack.tip_radius * (1.0 - math.sin(pressure))
-        free = depth - 0.5 * sun * math.sin(transverse) ** 2 / math.cos(self.helix_angle)
-        first = np.maximum(0.5 * total, free)
+        first = np.minimum(0.5 * total, total - self._least(PLANET, planet))
+        first = np.maximum(first, self._least(SUN, sun))
         return first, total - first
+
+    def _least(self, k: int, teeth: Any) -> Any:
+        """Shift of a gear, by its place: as given, or the least without undercut."""
+        if (own := self.shifts[k]) is not None:
+            return own
+        rack, (pressure, transverse) = self.racks[k], self.angles
+        depth = rack.dedendum - rack.tip_radius * (1.0 - math.sin(pressure))
+        depth += NO_UNDERCUT
+        return depth - 0.5 * teeth * math.sin(transverse) ** 2 / math.cos(self.helix_angle)
 
     def _gear(self, k: int, module: Any, width: Any, teeth: Any, shift: Any, shorter: Any) -> Gear:
         """A gear, by its place; shorter: k, where none is given."""
@@ -208,7 +230,7 @@ class Planets:
     ring: tuple[float, float] = (1.0, LARGE)
     spaced: bool = True
     order: str = "any"
-    clearance: float = 1.0
+    clearance: float = 0.5
     widest: float = math.inf
 
     def teeth(self, pair: GearPair) -> Three:
@@ -225,21 +247,38 @@ class Planets:
 
     def possible(self, z1: Any, z2: Any) -> Any:
         """Whether numbers of teeth of pairs are allowed and can be put together."""
+        return np.logical_and.reduce([kept for _, kept in self.rules(z1, z2)])
+
+    def rules(self, z1: Any, z2: Any) -> Iterator[tuple[str, Any]]:
+        """Yield what is asked of numbers of teeth of pairs, and whether they keep it."""
         sun, planet, ring = self.teeth_of(z1, z2)
-        fits = _within(ring, self.ring) & np.greater(ring, planet) & _within(sun, self.sun)
+        yield (
+            f"{_teeth(self.sun)} of the {'sun' if self.count else 'pinion'}",
+            _within(sun, self.sun),
+        )
+        larger = np.greater(ring, planet) & np.greater_equal(planet, LEAST_PLANET)
+        least = f"planets of {LEAST_PLANET} teeth or more" if self.count else "the pinion"
+        yield f"a ring with room for {least}", larger
+        yield f"{_teeth(self.ring)} of the ring", _within(ring, self.ring)
         if self.cutting.cutter is not None:
-            fits = fits & np.greater(ring, self.cutting.cutter.teeth)
+            cutter = self.cutting.cutter.teeth
+            yield f"a ring of more teeth than its cutter, {cutter:g}", np.greater(ring, cutter)
         if not self.count:
-            return fits
-        fits = fits & _within(planet, self.planet) & (np.mod(planet, 1.0) == 0.0)
+            return
+        yield f"{_teeth(self.planet)} of a planet", _within(planet, self.planet)
+        less = f"z_p = (z_r - z_s{f' - {self.fewer}' if self.fewer else ''})/2"
+        yield f"whole teeth of a planet, {less}", np.mod(planet, 1.0) == 0.0
         if self.spaced:
-            fits = fits & (np.mod(sun + ring, self.count) == 0)
+            text = f"a sum z_s + z_r that is a multiple of {self.count} planets"
+            yield text, np.mod(sun + ring, self.count) == 0
         if self.order == "hunting":
             whole = [np.rint(z).astype(np.int64) for z in (sun, planet, ring)]
-            fits = fits & (np.gcd(whole[0], whole[1]) == 1) & (np.gcd(whole[1], whole[2]) == 1)
+            alone = (np.gcd(whole[0], whole[1]) == 1) & (np.gcd(whole[1], whole[2]) == 1)
+            yield "hunting teeth in both meshes (mesh_order)", alone
         elif self.order != "any":
-            fits = fits & ((np.mod(sun, self.count) == 0) == (self.order == "simultaneous"))
-        return fits
+            text = "a" if self.order == "simultaneous" else "no"
+            alike = (np.mod(sun, self.count) == 0) == (self.order == "simultaneous")
+            yield f"{text} multiple of {self.count} planets as z_s (mesh_order)", alike
 
     def gears(self, pair: GearPair) -> tuple[Gear, Gear, Gear, Any]:
         """Sun, planet (or pinion) and ring of pairs, and their distance [mm]."""
@@ -269,20 +308,25 @@ class Planets:
 
     def room(self, pair: GearPair) -> Any:
         """Whether gears of pairs that are possible fit each other, in any module."""
+        return np.logical_and.reduce([kept for _, kept in self.fits(pair)])
+
+    def fits(self, pair: GearPair) -> Iterator[tuple[str, Any]]:
+        """Yield what gears have to keep beside each other, and whether those of pairs keep it."""
         sun, planet, ring, distance = self.gears(pair)
         with np.errstate(invalid="ignore"):
-            fits = np.isfinite(distance + ring.profile_shift)
-        module = pair.normal_module
-        left = margins(GearPair(planet, ring, -distance))
-        for name, margin in left.items():
+            yield "a centre distance without backlash", np.isfinite(distance + ring.profile_shift)
+        module, inner = pair.normal_module, "planet and ring" if self.count else "pinion and ring"
+        if self.count:
+            gap = self.gap(pair) >= (self.clearance - ROUNDING) * module
+            yield f"{self.clearance:g} m_n between the tips of neighbouring planets", gap
+        for name, margin in margins(GearPair(planet, ring, -distance)).items():
             if name not in ACCEPTED:
-                fits = fits & (margin >= -ROUNDING)
-        if not self.count:
-            return fits
-        outer = GearPair(sun, planet, distance)
-        for clear in tip_clearances(outer):
-            fits = fits & (clear >= -ROUNDING * module)
-        return fits & (self.gap(pair) >= (self.clearance - ROUNDING) * module)
+                limit = name.rstrip("01").replace("_", " ")
+                free = "interference" in name or name == "cutter_overcut"
+                words = f"{inner} without {limit}" if free else f"{limit} of {inner}"
+                yield words, margin >= -ROUNDING
+        for clear in tip_clearances(GearPair(sun, planet, distance)) if self.count else ():
+            yield "tip clearance of sun and planet", clear >= -ROUNDING * module
 
     def gap(self, pair: GearPair) -> Any:
         """Least gap [mm] of the tip circles of neighbouring planets."""
@@ -310,7 +354,8 @@ class Planets:
             shapes = (SOLID, SOLID) if solid else self.cutting.blanks
             each = [shape.volume(gear) for shape, gear in zip(shapes, (sun, planet), strict=True)]
         parts = [each[SUN], self.count * each[PLANET]] if self.count else [each[PLANET]]
-        return tuple(np.where(fits, part, np.inf)[()] for part in (*parts, ring.volume))
+        every = (*parts, ring.volume)
+        return tuple(np.where(fits & np.isfinite(part), part, np.inf)[()] for part in every)
 
     def slower(self, pair: GearPair, with_ring: bool) -> tuple[Any, Any]:
         """Torque and speed of the driving gear of a mesh over those of the pair's pinion.
@@ -344,32 +389,67 @@ def _within(teeth: Any, span: tuple[float, float]) -> Any:
     return np.greater_equal(teeth, span[0]) & np.less_equal(teeth, span[1])
 
 
+def _teeth(span: tuple[float, float]) -> str:
+    """A range of teeth in words."""
+    low, high = span
+    if high >= LARGE:
+        return f"{low:g} teeth or more"
+    return f"{low:g} teeth" if low == high else f"{low:g} to {high:g} teeth"
+
+
+def no_teeth(ways: Sequence[Planets], z1: Any, z2: Any) -> str:
+    """Why no way takes any of some numbers of teeth (n,) of pairs; "" where one does.
+
+    By the way that keeps most of what is asked, in its order.
+    """
+    if not np.size(z1):
+        return "No numbers of teeth allowed have the ratio"
+    said = [_first_unkept([*way.rules(z1, z2)]) for way in ways]
+    most = max(said, key=lambda each: each[0])
+    if not most[1]:
+        return ""
+    counts = " or ".join(str(n) for n in dict.fromkeys(way.count for way in ways))
+    law = {"ring": "1 + z_r/z_s", "sun": "1 + z_s/z_r", "carrier": "z_r/z_s"}[ways[0].held]
+    which = f" with {counts} planets have the ratio {law}" if ways[0].count else " have the ratio"
+    before = f", {most[2]}" if most[2] else ""
+    return f"No numbers of teeth{which}{before} and {most[1]} together"
+
+
+def _first_unkept(rules: Sequence[tuple[str, Any]]) -> tuple[int, str, str]:
+    """How many rules some rows (n,) keep together, the first that none keeps then, and the last."""
+    left, before = True, ""
+    for k, (name, kept) in enumerate(rules):
+        if not np.any(left & kept):
+            return k, name, before
+        if not np.all(kept | ~np.asarray(left)):
+            before = name
+        left = left & kept
+    return len(rules), "", ""
+
+
 def no_room(ways: Sequence[Planets], pairs: GearPair) -> str:
     """Why no planets or ring fit any of the pairs (n,), of the least module; "" where some do."""
     first = ways[0]
-    if not np.size(pairs.pinion_teeth):
-        counts = " or ".join(str(n) for n in dict.fromkeys(way.count for way in ways))
-        spaced = ", z_s + z_r being a multiple of that" if first.spaced else ""
-        return (
-            f"No numbers of teeth allowed can be put together with {counts} planets{spaced}"
-            if first.count
-            else "No numbers of teeth allowed have the ratio"
-        )
     left = [(way, way.possible(pairs.pinion_teeth, pairs.wheel_teeth)) for way in ways]
+    rows = [[("", fits), *way.fits(pairs)] for way, fits in left]
+    missed = max((_first_unkept(each) for each in rows), key=lambda each: each[0])
+    if missed[1]:
+        before = f"{missed[2]} and " if missed[2] else ""
+        return f"No gears of the teeth that can be put together have {before}{missed[1]}"
     left = [(way, fits & way.room(pairs)) for way, fits in left]
-    if not any(fits.any() for _, fits in left):
-        return (
-            "Of all numbers of teeth allowed neighbouring planets touch, or the mesh of planet and "
-            "ring interferes: allow fewer planets, or other planet_teeth_reduction"
-            if first.count
-            else "Of all numbers of teeth allowed pinion and ring interfere"
-        )
     least = min(
         (float(np.min(-way.gears(pairs)[RING].outside[fits])) for way, fits in left if fits.any()),
         default=0.0,
     )
     if least > first.widest:
         return f"The smallest ring is {least:.5g} mm wide, {first.widest:.5g} mm are allowed"
+    if first.cutting.may_be_thin and not any(
+        (ring_rim(way.gears(pairs)[RING])[fits] > THIN_RING).any() for way, fits in left
+    ):
+        what = (
+            f"has a rim of {THIN_RING:g} m_n or less below its roots, which has no Y_B in ISO 6336"
+        )
+        return f"Every ring, of the least module too, {what}: make its outside larger"
     return ""
 
 
@@ -423,11 +503,14 @@ class InPlanetaryMesh:
         return self.planets.mesh(pair, self.with_ring)
 
     def _loads(self, pair: GearPair, fits: Any) -> tuple[Any, Any]:
-        """`Planets.slower`; torques are NaN where gears do not fit, or the ring is too large."""
+        """`Planets.slower`; torques are NaN where gears do not fit, or a ring is large or thin."""
         torque, speed = self.planets.slower(pair, self.with_ring)
         fits = fits & self.planets.possible(pair.pinion_teeth, pair.wheel_teeth)
+        ring = self.planets.gears(pair)[RING]
         if math.isfinite(self.planets.widest):
-            fits = fits & (-self.planets.gears(pair)[RING].outside <= self.planets.widest)
+            fits = fits & (-ring.outside <= self.planets.widest)
+        if self.planets.cutting.may_be_thin and "Y_B" not in self.standard.given:
+            fits = fits & (ring_rim(ring) > THIN_RING)
         return np.where(fits, torque, np.nan)[()], speed
 
     def safeties(self, pair: GearPair, torque: Any, speed: Any) -> Any:

@@ -39,8 +39,8 @@ class Practice:
     PROFILE_MODIFICATIONS`, for 2019; shaft: of the pinion, by default midway; webs: (b_s/b,
     s_R/m_n) of gears with webs; bores: inner diameters d_i [mm], of bore or rim; backup: ratios
     s_R/h_t of rims, but of rings, whose rim ends at `Gear.outside`; meshes: in which pinion and
-    wheel are at once, of planetary stages (number of planets of sun or ring, 1 of a planet, 0 of a
-    ring that the casing holds), None: one pair between two shafts;
+    wheel are at once, of planetary stages (number of planets of sun or ring, 1 of a planet; of
+    gears that the casing holds minus that of a sun, 0 of a ring), None: a pair between two shafts;
     limited_pitting: permitted; lowest: Z_NT and Y_NT at 1e10 cycles, 0.85 to 1.
     """
 
@@ -63,7 +63,7 @@ class Practice:
     def bending(self, diameter: Any) -> Any:
         """Return K of `load_factors.shaft_misalignment`, of a sun with the twist by all meshes."""
         bent = self.shaft.bending(diameter)
-        return bent if self.meshes is None else bent + twist_of_meshes(self.meshes[0])
+        return bent if self.meshes is None else bent + twist_of_meshes(abs(self.meshes[0]))
 
 
 def of_blanks(practice: Practice, pair: GearPair, blanks: tuple[Blank, Blank]) -> Practice:
@@ -98,8 +98,8 @@ def check(practice: Practice) -> None:
         raise ValueError("no Y_B of a backup ratio of 0.5 and less: rate the rim by other means")
     if not 0.5 <= practice.lowest <= 1.0:
         raise ValueError(f"the life factor at 1e10 cycles is {practice.lowest:g}: 0.5 to 1")
-    if practice.meshes is not None and not (min(practice.meshes) >= 0.0 < max(practice.meshes)):
-        raise ValueError(f"meshes {practice.meshes}: 0 and more, and not 0 of both gears")
+    if practice.meshes is not None and not max(practice.meshes) > 0.0:
+        raise ValueError(f"meshes {practice.meshes}: above 0 of one gear at least")
 
 
 @dataclass(frozen=True)

@@ -146,8 +146,8 @@ def shared_mass(
     """Return m_red = 1/(p_1/m_1 + p_2/m_2) [t/mm] of gears in p_1 and p_2 meshes at once.
 
     m = pi/8 rho |1 - q^4| d_m^4/d_b^2, as in `reduced_mass`, d_i of a ring its outside diameter. p:
-    the number of planets for a sun or ring, 1 for a planet, 0 for what the casing holds: m_sun
-    m_pla/(p m_pla + m_sun), and m_pla for planet and fixed ring. Source: ISO 6336-1:2006, 6.5
+    the number of planets for a sun or ring, 1 for a planet, 0 and less for what the casing holds:
+    m_sun m_pla/(p m_pla + m_sun), and m_pla for planet and fixed ring. Source: ISO 6336-1:2006, 6.5
     [memory], and gfsReboucas/Drivetrain; a printed report meets both to every digit (1.534e-7,
     1.4684e-6); of a ring that turns the same rule, unverified.
     """
@@ -156,7 +156,7 @@ def shared_mass(
         mean = mean_diameter(gear)
         end = gear.outside if is_internal(gear.teeth) else bore
         left = np.abs(1.0 - (end / mean) ** 4) * density
-        inverse = inverse + count * gear.base_diameter**2 / (left * mean**4)
+        inverse = inverse + max(count, 0.0) * gear.base_diameter**2 / (left * mean**4)
     return np.pi / 8.0 / inverse
 
 

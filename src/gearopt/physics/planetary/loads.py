@@ -64,14 +64,14 @@ def mesh_load_factor(planets: int, rule: str) -> float:
     return known.values[planets]
 
 
-def with_sun(sun: Operation, planets: int) -> MeshLoad:
-    """Return the load of sun (as pinion) and planet.
+def with_sun(sun: Operation, planets: int, held: bool = False) -> MeshLoad:
+    """Return the load of sun (as pinion) and planet; held: the sun, by the casing.
 
     sun: operation of the sun: its speed [rad/s] against the carrier, as power [N mm/s] its torque
     times that speed (the power of the meshes, not of the shaft).
     """
     operation = replace(sun, power=sun.power / planets, contacts=(float(planets), 1.0))
-    return MeshLoad(operation, (float(planets), 1.0))
+    return MeshLoad(operation, (float(-planets if held else planets), 1.0))
 
 
 def with_ring(sun: Operation, planets: int, ratio: Any, held: bool) -> MeshLoad:

@@ -215,6 +215,9 @@ def _check_teeth(scene: "Scene", own: StageTable, k: int) -> None:
     if own.held == "sun" and own.ring_teeth is None and not scene.limits.wheel_teeth:
         rule = "is missing: a ring that drives needs a range"
         raise refuse(rule, [60, 140], ("stage", k, "ring_teeth"), "sample")
+    if own.held == "sun" and not (own.face_width or own.face_width_over_diameter):
+        rule = "is missing: over the ring's diameter, where the sun is held; [gears] has the sun's"
+        raise refuse(rule, [0.1, 0.3], ("stage", k, "face_width_over_diameter"), "sample")
 
 
 def cuttings(scene: "Scene", own: StageTable) -> tuple[Cutting, ...]:
@@ -288,7 +291,7 @@ def ways(scene: "Scene", own: StageTable) -> Iterator[Planets]:
             _span(own.ring_teeth or usual),
             own.equally_spaced is not False,
             own.mesh_order or "any",
-            1.0 if own.planet_clearance is None else float(own.planet_clearance),
+            Planets.clearance if own.planet_clearance is None else float(own.planet_clearance),
             **({"widest": diameter.value} if diameter else {}),
         )
 
@@ -330,11 +333,14 @@ def planet_assumptions(scene: "Scene") -> Iterator[str]:
     if any(own.type == PLANETARY for own in stages):
         yield (
             "Profile shifts that the file does not give follow a rule of this program: the centre "
-            "distance is midway between the reference distances of both meshes, x_s is half of "
-            "x_s + x_p and no less than keeps the sun from undercut, sun and planets are shortened "
-            "by x_s + x_p - y, the ring has no backlash, and its tips end at the form circle of "
-            "the planets. A positive shift moves the ring's teeth towards its centre."
+            "distance is midway between the reference distances of both meshes, or as much larger "
+            "as keeps sun and planets from undercut, x_s is half of x_s + x_p as far as neither is "
+            "undercut, sun and planets are shortened by x_s + x_p - y, the ring has no backlash, "
+            "and its tips end at the form circle of the planets. A positive shift moves the ring's "
+            "teeth towards its centre."
         )
+        if any(own.held == "sun" and own.face_width is None for own in stages):
+            yield "The face width of a stage whose sun is held is limited over its ring's diameter."
         yield (
             "Meshes of planets are rated against the carrier, with the torque over their number "
             "times K_γ. K_Hβ takes sun and planets for pinions on shafts of their own, without "
@@ -372,7 +378,7 @@ def at_once(own: StageTable, count: int, with_ring: bool) -> tuple[float, float]
     if not count:
         return None
     held = 0.0 if own.held == "ring" else float(count)
-    return (1.0, held) if with_ring else (float(count), 1.0)
+    return (1.0, held) if with_ring else (float(-count if own.held == "sun" else count), 1.0)
 
 
 def options(scene: "Scene", own: StageTable) -> tuple[Option, ...]:

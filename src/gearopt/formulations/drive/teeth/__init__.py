@@ -14,8 +14,9 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import sizing_text
-from gearopt.formulations.drive.planetary import no_room
+from gearopt.formulations.drive.planetary import Planets, no_room, no_teeth
 from gearopt.formulations.drive.teeth.choices import best_choices
+from gearopt.formulations.drive.teeth.columns import spans
 from gearopt.formulations.drive.teeth.front import fronts
 from gearopt.formulations.drive.teeth.progress import MARGIN, TIE, Progress, Teeth
 from gearopt.formulations.drive.teeth.rated import RatedTable
@@ -353,13 +354,30 @@ def _unfit(train: Train) -> str:
     reasons = [
         f"{why} (stage {k + 1})."
         for k, options, known in ways
-        if (why := no_room([o.planets for o in options], _smallest(known)))
+        if (why := _no_stage(train, k, [o.planets for o in options], known))
     ]
     return " ".join(reasons) or " ".join(
         f"No teeth fit {_distances(train.stages[k])} of stage {k + 1}, with the modules, "
         "numbers of teeth, ratios and profile shifts allowed."
         for k in bare
     )
+
+
+def _no_stage(train: Train, k: int, ways: list[Planets], known: Table) -> str:
+    """What keeps planets or a ring from a stage (from 0) of a table; nothing where some fit."""
+    if len(known.ratio):
+        return no_room(ways, _smallest(known))
+    stage, why = train.stages[k], ""
+    for wheels in (stage.wheel_teeth, (1, None)):  # limits of rings are asked of ways as well
+        free = replace(stage, wheel_teeth=wheels, options=())
+        stages = (*train.stages[:k], free, *train.stages[k + 1 :])
+        ranges = spans(replace(train, stages=stages), k, train.highest_ratio)
+        z1 = np.repeat([z for z, *_ in ranges], [stop - start + 1 for _, start, stop in ranges])
+        rows = [np.arange(start, stop + 1) for _, start, stop in ranges]
+        why = no_teeth(ways, z1, np.concatenate(rows))
+        if len(z1):
+            break
+    return why
 
 
 def _smallest(known: Table) -> GearPair:

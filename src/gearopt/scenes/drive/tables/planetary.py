@@ -125,10 +125,10 @@ class PlanetaryKeys(Table):
         "1.35, 1.44 and 1.47 for 3 to 7 (practice of wind turbines; only 1.10 is printed in a "
         "report, the rest is unverified)",
     )
-    planet_clearance: Annotated[Fraction | None, number(1, 0, 20, zero=True)] = Field(
+    planet_clearance: Annotated[Fraction | None, number(0.5, 0, 20, zero=True)] = Field(
         None,
         description="Smallest gap of the tip circles of neighbouring planets, in normal modules; "
-        "by default 1 (a rule of this program)",
+        "by default 0.5 (a rule of thumb of this program)",
     )
     mesh_order: Annotated[str | None, choice(*ORDERS)] = Field(
         None,
