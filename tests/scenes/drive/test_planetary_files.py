@@ -5,11 +5,14 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from campaigns import few
 
 import gearopt
 from gearopt.errors import SceneError
 from gearopt.report.kinds.drive.rating_words import _in_stages
 from gearopt.scenes.drive.notes import assumptions
+from gearopt.scenes.drive.planetary import at_once
+from gearopt.scenes.drive.tables.drive import StageTable
 
 PROBLEMS = Path(__file__).parents[3] / "problems"
 STAGE = PROBLEMS / "planetary_stage.toml"
@@ -253,6 +256,8 @@ def test_words_of_a_drive_of_planets():
 )
 def test_meshes_of_unverified_factors_are_named_together(where, words):
     assert _in_stages(where, ["1, a", "1, b", "2, a", "2, b"]) == words
+
+
 def test_printed_digits_of_shifts_fit_a_printed_distance():
     """The report has x_p = 0.5039, of which the fourth digit is rounded, and a = 584 mm."""
     printed = gearopt.rate(WIND, {"stage[1].planet.profile_shift": 0.5039}).design["rating"]
@@ -268,6 +273,17 @@ def test_printed_digits_of_shifts_fit_a_printed_distance():
 def test_limits_of_shifts_that_planets_do_not_keep_are_refused(key, value):
     with pytest.raises(SceneError, match=rf"shift\.{key} .* external gears alone"):
         gearopt.solve(STAGE, {"shift.sum": 0.3, f"shift.{key}": value})
+
+
+def test_a_held_sun_has_no_mass_and_the_twist_of_all_meshes():
+    """Minus the number of planets, as of `Practice.meshes`; a held ring has 0."""
+    stage = StageTable(type="planetary", fixed="sun")
+    assert [at_once(stage, 3, ring) for ring in (False, True)] == [(-3.0, 1.0), (1.0, 3.0)]
+
+
+def test_a_changed_sun_is_the_one_that_is_rated():
+    stage = StageTable(type="planetary").model_copy(update={"sun_teeth": (20, 20)})
+    assert stage.pinion_teeth == (20, 20) and "pinion_teeth" not in stage.model_fields_set
 
 
 def test_a_face_width_over_the_ring_is_not_that_of_all_gears():
@@ -302,3 +318,25 @@ def test_a_thin_ring_is_left_out_of_a_search_within_a_given_outside():
     (stage,) = result.design["stages"]
     root = stage["ring_root_diameter_mm"]
     assert 180.0 - root > 2 * 1.75 * stage["normal_module_mm"]
+
+
+WAYS_OUT = {
+    "assembly": ({"sun_teeth": 20, "ring_teeth": 84}, {"planets", "ring_teeth", "equally_spaced"}),
+    "order": ({"sun_teeth": 20, "mesh_order": "simultaneous"}, {"mesh_order", "sun_teeth"}),
+    "reduction": ({"planet_teeth_reduction": [9]}, {"planet_teeth_reduction"}),
+    "cutter": ({"ring": {"cutter_teeth": 400}}, {"cutter_teeth"}),
+    "outside": ({"ring": {"outside_diameter": "120 mm"}}, {"outside_diameter"}),
+}
+
+
+@pytest.mark.parametrize("name", few(list(WAYS_OUT), 1))
+def test_what_stages_with_a_ring_may_have_instead_is_found_and_true(name):
+    own, keys = WAYS_OUT[name]
+    asked = tomllib.loads(STAGE.read_text())
+    del asked["duty"]["output_speed"], asked["x-expected"]
+    asked["duty"]["ratio"] = 5.25 if name != "assembly" else 5.2
+    asked["stage"] = [{"type": "planetary", "planets": 3} | own]
+    ways = gearopt.explain(asked).remedies
+    assert keys <= {change.key.split(".")[-1] for way in ways for change in way.changes}
+    for way in ways:
+        assert gearopt.solve(asked, way.edits).value is not None

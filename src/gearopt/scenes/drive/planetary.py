@@ -29,6 +29,7 @@ from gearopt.scenes.drive.tables.planetary import (
     OWN,
     PLANETARY,
     REDUCTIONS,
+    bent,
     gear_of,
 )
 from gearopt.scenes.drive.tables.rating import GearTable, RatingTable, with_shared
@@ -82,12 +83,7 @@ def with_gears_named(stages: tuple[StageTable, ...]) -> tuple[StageTable, ...]:
         if own.type == PLANETARY and "K_gamma" in own.given_iso6336.factors():
             tell = "Write mesh_load_factor in the [[stage]]"
             raise refuse("has another name here", tell, (k, "given_iso6336", "K_gamma"), "tell")
-        if own.type == PLANETARY:
-            own = copied(own, {"pinion": gear_of(own.sun), "wheel": _bent(own)})
-            own = copied(own, {"pinion_teeth": own.sun_teeth, "wheel_teeth": own.ring_teeth})
-        elif own.type == INTERNAL:
-            own = copied(own, {"wheel": gear_of(own.ring), "wheel_teeth": own.ring_teeth})
-        made.append(own)
+        made.append(own.with_gears_named())
     return tuple(made)
 
 
@@ -96,14 +92,9 @@ def _kinds(name: str) -> str:
     return both
 
 
-def _bent(own: StageTable) -> GearTable:
-    """The planet of a stage, whose teeth are bent both ways."""
-    return copied(gear_of(own.planet), {"reversed_load": True})
-
-
 def inner(own: StageTable) -> StageTable:
     """A planetary stage as its mesh of planet and ring."""
-    return copied(own, {"pinion": _bent(own), "wheel": gear_of(own.ring)})
+    return copied(own, {"pinion": bent(own.planet), "wheel": gear_of(own.ring)})
 
 
 def every_mesh(stages: Sequence[StageTable]) -> tuple[StageTable, ...]:
@@ -366,7 +357,7 @@ def meshes(own: StageTable, count: int) -> tuple[StageTable, ...]:
         for k in (0, 1)
     )
     sun, ring = (copied(gear_of(gear), {"contacts": count}) for gear in (own.sun, own.ring))
-    planet = _bent(own)
+    planet = bent(own.planet)
     return (
         copied(own, outer | {"pinion": sun, "wheel": planet}),
         copied(own, second | {"pinion": planet, "wheel": ring}),

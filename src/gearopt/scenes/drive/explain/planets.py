@@ -3,10 +3,19 @@
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from fractions import Fraction
 from typing import Any
 
 from gearopt.formulations.drive.planetary import LARGE, Planets
 from gearopt.formulations.drive.train import Stage
+from gearopt.optimise.explaining.explanation import Change
+from gearopt.physics.planetary.loads import SHARING_RULES
+from gearopt.scenes.drive.planetary import SHARING
+from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.drive import StageTable
+from gearopt.scenes.drive.tables.planetary import PLANETARY, Teeth
+from gearopt.scenes.explaining.numbers import Path, at, put, times, written
+from gearopt.scenes.reading.toml_writing import dotted, toml_text
 
 OF_PLANETS = (  # what is asked of the teeth of such a stage, the dearest to drop
     *("sun_teeth_low", "sun_teeth_high", "sun_teeth", "ring_teeth_low", "ring_teeth_high"),
@@ -15,6 +24,7 @@ OF_PLANETS = (  # what is asked of the teeth of such a stage, the dearest to dro
 )
 WIDER = 1.25  # by which ranges of teeth are dropped
 MEMBERS = ("sun", "planet", "ring")
+STEPS, TIMES = 12, (1.1, 1.25, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)  # teeth and diameters that are tried
 
 
 def of_planets(stage: Stage) -> Iterator[str]:
@@ -65,3 +75,66 @@ def _wider(member: str, span: tuple[float, float], dropped: set[str]) -> tuple[f
     few, many = ({f"{member}_teeth", f"{member}_teeth_{end}"} & dropped for end in ("low", "high"))
     low = max(1.0, math.floor(low / WIDER)) if few else low
     return low, high if not many or high >= LARGE else float(math.ceil(high * WIDER))
+
+
+def ways_of_planets(scene: Scene) -> Iterator[Iterator[tuple[tuple[Change, ...], Scene]]]:
+    """Yield of every key of stages with a ring the next values, near ones first, and drives."""
+    for k, own in enumerate(scene.stage):
+        for path, values in _next_values(own) if own.epicyclic else ():
+            yield _changed(scene, ("stage", k, *path), values)
+
+
+def _changed(
+    scene: Scene, path: Path, values: list[Any]
+) -> Iterator[tuple[tuple[Change, ...], Scene]]:
+    was = _text(at(scene, path), path)
+    for value in values:
+        change = Change(dotted(path), was, _text(value, path), 1.0)
+        yield (change,), put(scene, path, value)
+
+
+def _text(value: Any, path: Path) -> str:
+    return "" if value is None else toml_text(one_number(written(value, path)))
+
+
+def one_number(value: Any) -> Any:
+    """A range of equal ends as one number."""
+    pair = isinstance(value, list) and len(value) == 2 and value[0] == value[1]
+    return value[0] if pair else value
+
+
+def _next_values(own: StageTable) -> Iterator[tuple[tuple[str, ...], list[Any]]]:
+    """Yield the keys that a stage may write otherwise, and values, near ones first."""
+    if own.type == PLANETARY:
+        known = SHARING_RULES[SHARING].values if own.mesh_load_factor is None else range(2, 8)
+        low, high = own.counts[0], own.counts[-1]
+        counts = [n for n in known if not low <= n <= high]
+        counts.sort(key=lambda n: min(abs(n - low), abs(n - high)))
+        yield ("planets",), [(n, n) for n in counts]
+        yield ("mesh_order",), [None] * (own.mesh_order is not None)
+        yield ("planet_teeth_reduction",), [None] * (own.planet_teeth_reduction is not None)
+    for name in ("sun_teeth", "planet_teeth", "ring_teeth"):
+        yield (name,), _near(getattr(own, name))
+    if own.type == PLANETARY:
+        smaller = (
+            [own.planet_clearance * Fraction(n, 4) for n in (3, 2, 1, 0)]
+            if (own.planet_clearance)
+            else []
+        )
+        yield ("planet_clearance",), smaller
+        yield ("equally_spaced",), [False] * (own.equally_spaced is not False)
+        yield ("fixed",), [held for held in ("ring", "carrier") if held != own.held]
+    if own.ring.cutter_teeth is not None:
+        fewer = [own.ring.cutter_teeth // n for n in (2, 3, 4, 6, 8, 12, 16)]
+        yield ("ring", "cutter_teeth"), [z for z in fewer if z >= 5]
+    if own.ring.outside_diameter is not None:
+        wide = [times(own.ring.outside_diameter, factor) for factor in TIMES]
+        yield ("ring", "outside_diameter"), wide
+
+
+def _near(teeth: Teeth) -> list[Teeth]:
+    """Fixed numbers of teeth up and down from one, near ones first; none of a range."""
+    if teeth is None or teeth[0] != teeth[1]:
+        return []
+    steps = [way * n for n in range(1, STEPS + 1) for way in (1, -1)]
+    return [(teeth[0] + n, teeth[0] + n) for n in steps]

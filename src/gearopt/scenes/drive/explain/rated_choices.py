@@ -6,6 +6,7 @@ from typing import Any
 from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.physics.iso6336.materials import QUALITIES, Material
 from gearopt.scenes.drive.explain.choice_moves import finer_series
+from gearopt.scenes.drive.explain.planets import one_number, ways_of_planets
 from gearopt.scenes.drive.explain.rated_conflict import Conflict
 from gearopt.scenes.drive.explain.requirements import DISTANCE
 from gearopt.scenes.drive.scene import MOST_STAGES, Scene
@@ -33,6 +34,12 @@ def choices(scene: Scene, known: Conflict, works: Works) -> Iterator[Remedy]:
         (DISTANCE, _finer_distances),
         ("", _others),
     )
+    for each in ways_of_planets(scene):
+        for changes, other in each:
+            if allowed(other) and works(other):
+                what = changes[0].key.split(".")[-1]
+                yield Remedy("choice", what, changes, 1.0, None, {"with": "feasible"})
+                break
     families = {name.split("[")[0] for name in known.names}
     for name, ways in every:
         if name and families and name not in families:
@@ -177,14 +184,8 @@ def _of_stages(scene: Scene, n: int) -> tuple[tuple[str, str, str], Scene] | Non
     if n < high or scene.stages is not None:  # else two places are to be written
         return None
     last = scene.stage[-1]
-    write = toml_text({key: _one(value) for key, value in content(last).items()})
+    write = toml_text({key: one_number(value) for key, value in content(last).items()})
     return (f"stage[{n}]", "", write), scene.model_copy(update={"stage": (*scene.stage, last)})
-
-
-def _one(value: Any) -> Any:
-    """Return a range of equal ends as one number."""
-    pair = isinstance(value, list) and len(value) == 2 and value[0] == value[1]
-    return value[0] if pair else value
 
 
 def _with_gears(scene: Scene, update: dict[str, Any]) -> Scene:

@@ -105,7 +105,7 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
     complete = not (turns.over or clock.over or case.open)
     late = "time ran out before all remedies were tried" if clock.over else ""
     late = late or ("not all remedies were tried" if turns.over or last.over else "")
-    words = "; ".join(filter(None, (_doubts(known), late)))
+    words = "; ".join(filter(None, (_doubts(known, case), late)))
     names, unsure = (_told(scene, each) for each in (known.names, known.unsure))
     return Remedies(names, with_least(ways, complete), words, known.any_resolves, unsure)
 
@@ -141,8 +141,10 @@ class _Turns:
             yield group
 
 
-def _doubts(known: Conflict) -> str:
-    return "" if known.names else "time ran out before the conflict was identified"
+def _doubts(known: Conflict, case: Case) -> str:
+    if known.names:
+        return ""
+    return "time ran out before the conflict was identified" if case.clock.over or case.open else ""
 
 
 def _groups(

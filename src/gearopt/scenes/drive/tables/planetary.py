@@ -1,5 +1,6 @@
 """Keys of a stage with planets, or of a pinion in a ring."""
 
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import Annotated, Any, Self
 
@@ -85,6 +86,13 @@ def gear_of(table: Table) -> GearTable:
     return GearTable.model_construct(set(held) & table.model_fields_set, **held)
 
 
+def bent(table: Table) -> GearTable:
+    """The keys of a planet, whose teeth are bent both ways, as those of a gear."""
+    gear = gear_of(table).model_copy(update={"reversed_load": True})
+    object.__setattr__(gear, "__pydantic_fields_set__", table.model_fields_set)
+    return gear
+
+
 class PlanetaryKeys(Table):
     """What a stage has that is no pair of external gears."""
 
@@ -155,6 +163,24 @@ class PlanetaryKeys(Table):
         """The stage as one of its meshes."""
         copy = self.model_copy()
         copy._mesh = mesh
+        return copy
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """A copy, in which its gears stay what checks call pinion and wheel."""
+        copy = super().model_copy(update=update, deep=deep)
+        return copy.with_gears_named() if {*(update or ())} & {*OWN} else copy
+
+    def with_gears_named(self) -> Self:
+        """The stage with sun and planet, or the ring, as what checks call pinion and wheel."""
+        named: dict[str, Any] = {}
+        if self.type == PLANETARY:
+            planet = bent(self.planet)
+            named = {"pinion": gear_of(self.sun), "wheel": planet, "pinion_teeth": self.sun_teeth}
+            named |= {"wheel_teeth": self.ring_teeth}
+        elif self.type == INTERNAL:
+            named = {"wheel": gear_of(self.ring), "wheel_teeth": self.ring_teeth}
+        copy = super().model_copy(update=named)
+        object.__setattr__(copy, "__pydantic_fields_set__", set(self.model_fields_set))
         return copy
 
     @property
