@@ -16,10 +16,18 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.result import Result
 from gearopt.scenes.drive import processes, sizing
+from gearopt.scenes.drive.counts import best_count
 from gearopt.scenes.drive.driving import may_drive
 from gearopt.scenes.drive.notes import assumptions, of_objectives
 from gearopt.scenes.drive.scene import PROCESSES, Scene
-from gearopt.scenes.drive.sizing import SMOOTH, drive_of, takes_real_values, whole_teeth
+from gearopt.scenes.drive.sizing import (
+    SMOOTH,
+    drive_of,
+    ideal_of_count,
+    takes_real_values,
+    whole_teeth,
+)
+from gearopt.scenes.drive.stage_types import by_type, held_as, open_types, words
 from gearopt.scenes.drive.trades import advice, objectives, to_choose, traded
 from gearopt.scenes.drive.without import without
 from gearopt.scenes.explaining.possible import Verdict
@@ -36,6 +44,8 @@ METHODS = ("exact", "process-one", "process-two", "sa", "sa-polish", "sa-paper",
 def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
     """Gears, designs by the processes, their layout; then assumptions and the rating."""
     to_choose(scene)
+    if open_types(scene):
+        return (Step(of_best_types),)
     last: tuple[Step[Scene], ...] = (Step(with_assumptions, always=True), Step(rated, always=True))
     if scene.layout is None:
         return *sizing.steps(scene, ask), *processes.steps(scene, ask), *last
@@ -49,10 +59,22 @@ def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
     return *gears, *layout.steps(scene), *last
 
 
+def of_best_types(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The drive with the best types of its stages, each choice answered as a file of its own."""
+    return best_count(
+        scene, ask, ideal_of_count, lambda one, asked, _: carried_out(steps(one, asked), one, asked)
+    )
+
+
 def with_assumptions(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """The answer with the assumptions of its design."""
     assert known is not None
     return replace(known, report=known.report | {"assumptions": assumptions(scene)})
+
+
+def every_assumption(scene: Scene) -> list[str]:
+    """The assumptions of all choices of types of the stages."""
+    return [*dict.fromkeys(text for one in by_type(scene) for text in assumptions(one))]
 
 
 def rated(scene: Scene, ask: Ask, known: Result | None) -> Result:
@@ -101,13 +123,14 @@ def posed(scene: Scene, method: str) -> Model:
     numbers of stages the best number.
     """
     to_choose(scene)
-    if scene.several:
+    if len(scene.each) > 1:
         best = carried_out(steps(scene, Ask()), scene, Ask())
         if best.value is None:
             raise SolveError("there is no drive to compare: gearopt explain shows why")
-        count = len(best.design["stages"])
-        model = posed(scene.held(count), method)
-        return replace(model, words=f"{model.words}, {count} stages (the best)")
+        held, count = held_as(scene, best.design), len(best.design["stages"])
+        chosen = f"{count} stages" if scene.several else words(held)
+        model = posed(held, method)
+        return replace(model, words=f"{model.words}, {chosen} (the best)")
     if scene.layout is not None:
         from gearopt.scenes.drive import layout
 
@@ -133,7 +156,7 @@ def rate_design(scene: Scene, ask: Ask, design: Mapping[str, Any]) -> Result:
     """Rating of a design that was found: `rated.rate_design`."""
     from gearopt.scenes.drive.rating.rated import rate_design as rate_found
 
-    return rate_found(scene, ask, design)
+    return rate_found(held_as(scene, design) if open_types(scene) else scene, ask, design)
 
 
 def possible(scene: Scene, clock: Clock) -> Verdict:
@@ -176,7 +199,7 @@ KIND = Kind(
     possible=possible,
     remedies=remedies,
     influences=influences,
-    assumptions=assumptions,
+    assumptions=every_assumption,
     trades=Trades(objectives, traded, advice, of_objectives),
     rate=rate,
     rate_design=rate_design,

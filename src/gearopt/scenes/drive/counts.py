@@ -1,7 +1,8 @@
-"""The best number of stages of a range: every count is solved, and their bounds are put together.
+"""The best number of stages of a range, or choice of their types: each is solved, and is bounded.
 
 A drive may have any of these numbers of stages, so that its designs are those of all counts, and
 the least of their bounds is one of it. Counts that real-valued sizes promise most of come first.
+A choice of types is such a count, too.
 """
 
 import math
@@ -14,19 +15,25 @@ from gearopt.optimise.certificate import least
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Event, Result, Watch
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.stage_types import open_types, words
 from gearopt.scenes.reading.ask import Ask
 
 BESIDE = 2.0  # s, at most, for a count that is known not to be the best
 WHOLE = "exhausted"  # the proof of a search to the end
+NONE = Result("drive", "limit", "not begun in time", {})
 Real = Callable[[Scene, Ask], Result]  # the drive with real-valued sizes
 Answer = Callable[[Scene, Ask, Result], Result]  # the drive, where those are known
 
 
 @dataclass(frozen=True)
 class Count:
-    """A number of stages: its drive, that with real-valued sizes, and its answer so far."""
+    """A number of stages, or their types: its drive, in real-valued sizes, and its answer so far.
+
+    types: words of the types, where they are chosen; else "".
+    """
 
     scene: Scene
+    types: str
     real: Result
     found: Result
     seconds: float
@@ -45,6 +52,11 @@ class Count:
         return self.scene.counts[0]
 
     @property
+    def words(self) -> str:
+        """What is counted: its number of stages, or their types."""
+        return self.types or f"{self.number} stage{'s' * (self.number > 1)}"
+
+    @property
     def bound(self) -> float:
         """Lower bound of all designs of this count."""
         if self.found.status == "infeasible":
@@ -59,30 +71,36 @@ def best_count(scene: Scene, ask: Ask, real: Real, answer: Answer) -> Result:
     and may be better.
     """
     clock = Clock(ask.budget)
-    counts = [_unsolved_count(scene.held(n), ask, clock, real) for n in scene.counts]
-    counts.sort(key=lambda c: (c.floor == math.inf, c.real.value or 0.0))
-    for k, count in enumerate(counts):
-        beside = count.floor > _least_value(counts)
-        share = BESIDE if beside else _share(clock, len(counts) - k)
-        counts[k] = _solved_count(count, ask, clock, answer, share)
-    for k, count in enumerate(counts):
+    named = open_types(scene)
+    counts = [_unsolved_count(one, named, ask, clock, real) for one in scene.each]
+    order = sorted(
+        range(len(counts)),
+        key=lambda k: (counts[k].floor == math.inf, counts[k].real.value or 0.0),
+    )
+    for done, k in enumerate(order):
+        beside = counts[k].floor > _least_value(counts)
+        share = BESIDE if beside else _share(clock, len(counts) - done)
+        counts[k] = _solved_count(counts[k], ask, clock, answer, share)
+    for k, count in ((k, counts[k]) for k in order):
         left = clock.left.seconds
         may_be_better = count.found.status == "limit" and count.bound < _least_value(counts)
         if may_be_better and not clock.over and left is not None and left > count.seconds:
             counts[k] = _solved_count(count, ask, clock, answer)
-    return _best(sorted(counts, key=lambda c: c.number), ask, clock)
+    return _best(counts, ask, clock)
 
 
-def _unsolved_count(scene: Scene, ask: Ask, clock: Clock, real: Real) -> Count:
+def _unsolved_count(scene: Scene, named: bool, ask: Ask, clock: Clock, real: Real) -> Count:
     """Return a count with its real-valued sizes, and their bound of what is not solved yet."""
-    before = clock.seconds
-    ideal = real(scene, _ask_of_count(ask, clock, scene.counts[0]))
+    before, types = clock.seconds, words(scene) if named else ""
+    count = Count(scene, types, NONE, NONE, 0.0)
+    ideal = real(scene, _ask_of_count(ask, clock, count.words))
     bound = None if scene.layout is not None else ideal.bound
     missing = {**ideal.objective, "value": None}
     unsolved = replace(ideal, status="limit", objective=missing, bound=bound, gap=None)
     unsolved = replace(unsolved, design={}, limits={}, certificate={}, message="not begun in time")
     result = ideal if ideal.status == "infeasible" else unsolved
-    return Count(scene, ideal, replace(result, name="drive"), clock.seconds - before)
+    found = replace(result, name="drive")
+    return replace(count, real=ideal, found=found, seconds=clock.seconds - before)
 
 
 def _solved_count(
@@ -92,7 +110,7 @@ def _solved_count(
     if clock.over or count.found.status == "infeasible":
         return count
     before = clock.seconds
-    result = answer(count.scene, _ask_of_count(ask, clock, count.number, seconds), count.real)
+    result = answer(count.scene, _ask_of_count(ask, clock, count.words, seconds), count.real)
     clock.evaluations += result.evaluations
     spent = count.seconds + clock.seconds - before
     better = _value(result) > _value(count.found) and result.status == "limit"
@@ -104,7 +122,7 @@ def _share(clock: Clock, counts: int) -> float | None:
     return None if left is None else left / counts
 
 
-def _ask_of_count(ask: Ask, clock: Clock, count: int, seconds: float | None = None) -> Ask:
+def _ask_of_count(ask: Ask, clock: Clock, count: str, seconds: float | None = None) -> Ask:
     """Return the request for one number of stages: at most so many seconds of what is left."""
     budget = clock.left
     if seconds is not None:
@@ -112,13 +130,13 @@ def _ask_of_count(ask: Ask, clock: Clock, count: int, seconds: float | None = No
     return replace(ask, budget=budget, watch=_watch_of_count(ask.watch, clock, count))
 
 
-def _watch_of_count(watch: Watch | None, clock: Clock, count: int) -> Watch | None:
+def _watch_of_count(watch: Watch | None, clock: Clock, count: str) -> Watch | None:
     """Return a watcher whose events name the number of stages; refused once, all end."""
     if watch is None:
         return None
 
     def follow(event: Event) -> bool:
-        part = f"{_stages(count)}, {event.part}".removesuffix(", ")
+        part = f"{count}, {event.part}".removesuffix(", ")
         clock.stopped = clock.stopped or watch(replace(event, part=part)) is False
         return not clock.stopped
 
@@ -155,16 +173,21 @@ def _row(count: Count) -> dict[str, Any]:
     stages = result.design.get("stages", [])
     return {
         "stages": count.number,
+        **({"types": count.types} if count.types else {}),
         "status": result.status,
         "objective": result.value,
         "bound": result.bound,
         "gap": result.gap,
         "ratios": [s["ratio"] for s in stages],
         "modules_mm": [s["normal_module_mm"] for s in stages],
-        "teeth": [[s["pinion_teeth"], s["wheel_teeth"]] for s in stages],
+        "teeth": [[s[f"{gear}_teeth"] for gear in _gears(s)] for s in stages],
         "conflict": result.proof.get("conflict", []) if result.status == "infeasible" else [],
         "seconds": count.seconds,
     }
+
+
+def _gears(stage: Mapping[str, Any]) -> tuple[str, ...]:
+    return ("sun", "planet", "ring") if stage.get("sun_teeth") else ("pinion", "wheel")
 
 
 def _trains(counts: Sequence[Count], top: int) -> list[Any]:
@@ -179,29 +202,31 @@ def _trains(counts: Sequence[Count], top: int) -> list[Any]:
     return [t for k, t in enumerate(trains[:top]) if k == 0 or objective(t) <= sure]
 
 
-def _stages(count: int) -> str:
-    return f"{count} stage{'s' * (count > 1)}"
+def _all(counts: Sequence[Count]) -> str:
+    if counts[0].types:
+        return "every choice of types of the stages"
+    return f"every number of stages from {counts[0].number} to {counts[-1].number}"
 
 
 def _message(found: Result, counts: Sequence[Count]) -> str:
     """Say which counts may be better than what was found, or that none is possible."""
     if found.status == "infeasible":
-        span = f"from {counts[0].number} to {counts[-1].number}"
-        return f"with every number of stages {span} no design meets all limits"
+        return f"with {_all(counts)} no design meets all limits"
     best = found.value or math.inf
-    unsure = [str(c.number) for c in counts if c.bound < best and c.found.status == "limit"]
+    unsure = [c for c in counts if c.bound < best and c.found.status == "limit"]
     if found.status == "optimal" or not unsure:
         return found.message
-    words = f"a better design may exist with {', '.join(unsure)} stages"
-    return f"{words}: not searched to the end"
+    which = "; ".join(c.types for c in unsure)
+    which = which or f"{', '.join(str(c.number) for c in unsure)} stages"
+    return f"a better design may exist with {which}: not searched to the end"
 
 
 def _proof(found: Result, counts: Sequence[Count]) -> dict[str, Any]:
     """Return the proof of the count that is bounded lowest, in words of all of them."""
-    span = f"Proof: every number of stages from {counts[0].number} to {counts[-1].number} was"
+    span = f"Proof: {_all(counts)} was"
     if found.status == "infeasible":
         return {"method": "every number of stages", "sentence": f"{span} excluded."}
     lowest = min(counts, key=lambda c: c.bound)
     sentence = str(lowest.found.proof.get("sentence", "")).removeprefix("Proof: ")
-    sentence = f" With {_stages(lowest.number)}: {sentence}" if sentence else ""
+    sentence = f" With {lowest.words}: {sentence}" if sentence else ""
     return {**lowest.found.proof, "sentence": f"{span} bounded; the least bound counts.{sentence}"}

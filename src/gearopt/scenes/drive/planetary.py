@@ -27,6 +27,7 @@ from gearopt.scenes.drive.tables.planetary import (
     INTERNAL,
     OF_INTERNAL,
     OWN,
+    PARALLEL,
     PLANETARY,
     REDUCTIONS,
     bent,
@@ -69,13 +70,11 @@ def with_gears_named(stages: tuple[StageTable, ...]) -> tuple[StageTable, ...]:
     """
     made = []
     for k, own in enumerate(stages):
-        written = own.model_fields_set
-        wrong = OF_PAIRS.get(own.type, OWN)
-        if own.type == INTERNAL:
-            wrong = (*wrong, *(name for name in OWN if name not in OF_INTERNAL))
-        if name := next((name for name in wrong if name in written), None):
-            kind = "a stage of external gears" if own.type not in OF_PAIRS else f'"{own.type}"'
-            rule = f"is not of {kind}" if own.type in OF_PAIRS else f"needs {_kinds(name)}"
+        each = [meaningless(kind) for kind in own.types]
+        wrong = [name for name in each[0] if all(name in names for names in each)]
+        if name := next((name for name in wrong if name in own.model_fields_set), None):
+            kinds = " or ".join(f'"{kind}"' for kind in own.types)
+            rule = f"needs {_kinds(name)}" if PARALLEL in own.types else f"is not of {kinds}"
             raise refuse(rule, at=(k, name), action="remove")
         for name in of_meshes(own.given_iso6336) if own.type != PLANETARY else ():
             rule = 'has values of two meshes, which a stage of type = "planetary" has'
@@ -85,6 +84,13 @@ def with_gears_named(stages: tuple[StageTable, ...]) -> tuple[StageTable, ...]:
             raise refuse("has another name here", tell, (k, "given_iso6336", "K_gamma"), "tell")
         made.append(own.with_gears_named())
     return tuple(made)
+
+
+def meaningless(kind: str) -> tuple[str, ...]:
+    """Keys of a stage that mean nothing of a type."""
+    if kind == INTERNAL:
+        return (*OF_PAIRS[kind], *(name for name in OWN if name not in OF_INTERNAL))
+    return OF_PAIRS.get(kind, OWN)
 
 
 def _kinds(name: str) -> str:

@@ -42,6 +42,7 @@ from gearopt.scenes.drive.rating.checks import (
 from gearopt.scenes.drive.rating.materials import MaterialTable, check_materials, check_same
 from gearopt.scenes.drive.rating.options import of_stage, of_stages, required
 from gearopt.scenes.drive.shifts import balanced, check_range, check_shift
+from gearopt.scenes.drive.stage_types import by_type, check_types
 from gearopt.scenes.drive.tables.blanks import blank, check_blanks
 from gearopt.scenes.drive.tables.drive import (
     Gears,
@@ -160,10 +161,12 @@ class Scene(Table):
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
         """Refuse what tables ask against each other, with its key and what to write instead."""
-        try:
-            self._check()
-        except PydanticCustomError as wrong:
-            raise renamed(self, wrong) from None
+        check_types(self)
+        for one in by_type(self):
+            try:
+                one._check()
+            except PydanticCustomError as wrong:
+                raise renamed(one, wrong) from None
         return self
 
     def _check(self) -> None:
@@ -209,6 +212,11 @@ class Scene(Table):
     def several(self) -> bool:
         """Return whether the number of stages is to be chosen."""
         return len(self.counts) > 1
+
+    @property
+    def each(self) -> tuple["Scene", ...]:
+        """The drives of all numbers of stages, or of all choices of their types."""
+        return tuple(self.held(n) for n in self.counts) if self.several else by_type(self)
 
     def held(self, count: int) -> "Scene":
         """Return the drive with one number of stages."""

@@ -15,6 +15,7 @@ from gearopt.scenes.drive.driving import may_drive
 from gearopt.scenes.drive.idlers import idlers
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.sizing import sized
+from gearopt.scenes.drive.stage_types import open_types, words
 from gearopt.scenes.drive.without import without
 from gearopt.scenes.reading.ask import Ask
 
@@ -50,7 +51,8 @@ def to_choose(scene: Scene) -> None:
 def _why_lacking(scene: Scene, name: str) -> str:
     """The reason why the drive lacks an objective; "" where it has it."""
     try:
-        replace(_train(scene), objective=name)
+        for one in scene.each if open_types(scene) else scene.each[:1]:
+            replace(one.train(), objective=name)
     except ValueError as reason:
         return str(reason)
     return ""
@@ -87,20 +89,25 @@ def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
         return sides.traded(held, names, gears)
     each = [
         replace(
-            _of_train(scene, scene.held(n).train(driver), names, method),
-            part=f"{n} stage{'s' * (n > 1)}, {driver} drives".removesuffix(", pinion drives"),
+            _of_train(scene, one.train(driver), names, method),
+            part=f"{_words(scene, one)}, {driver} drives".removesuffix(", pinion drives"),
         )
-        for n in scene.counts
+        for one in scene.each
         for driver in may_drive(scene)
     ]
     curves = any(one.limiting is not None and not one.limiting.whole for one in each)
     if len(each) > 1 and (scene.teeth is None or method not in (None, EXACT) or curves):
         raise SolveError(
-            "numbers of stages, and ratios above 1 and below, are compared by complete fronts "
-            "alone, of whole teeth: write stages = 2, or another number, and a ratio_tolerance on "
-            "one side of 1"
+            "numbers of stages or their types, and ratios above 1 and below, are compared by "
+            "complete fronts alone, of whole teeth: write stages = 2, or another number, one type "
+            "for each [[stage]], and a ratio_tolerance on one side of 1"
         )
     return replace(each[0], others=tuple(each[1:])) if len(each) > 1 else replace(each[0], part="")
+
+
+def _words(scene: Scene, one: Scene) -> str:
+    n = one.counts[0]
+    return words(one) if open_types(scene) else f"{n} stage{'s' * (n > 1)}"
 
 
 def _of_train(scene: Scene, train: Train, names: Sequence[str], method: str | None) -> Tradeoff:
@@ -140,10 +147,6 @@ def _against_extreme(train: Train, names: Sequence[str]) -> Tradeoff:
     )
     problem = load_front.problem(train, tuple(names))
     return Tradeoff(problem, listed, lambda x: _whole_design(train, x), limiting)
-
-
-def _train(scene: Scene) -> Train:
-    return scene.held(scene.counts[0]).train()
 
 
 def _real_design(train: Train, x: Array) -> Mapping[str, Any]:

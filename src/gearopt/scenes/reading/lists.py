@@ -196,6 +196,19 @@ def several(item: Reads, example: Any, in_order: bool = False, single: bool = Fa
     return Reads(read, example, {"anyOf": [item.schema, schema]} if single else schema)
 
 
+def one_or_several(item: Reads) -> Reads:
+    """Read an item, or a list of items to choose from, as a tuple; a list of one is that item."""
+    many = several(item, [item.example])
+
+    def read(value: Any, example: Any) -> Any:
+        if not isinstance(value, list | tuple):
+            return item.reader(value, example)
+        each = tuple(dict.fromkeys(many.reader(value, example)))
+        return each if len(each) > 1 else each[0]
+
+    return Reads(read, item.example, {"anyOf": [item.schema, many.schema]})
+
+
 def pair(item: Reads) -> Reads:
     """Read a place [x, y] of two items."""
 

@@ -262,10 +262,11 @@ def counts(result: Result, measures: Measures) -> Section | None:
     long = (f"{name}{sign}", "above the best,\n%", f"bound{sign}", "gap,\n%")
     names = {head.replace("\n", " "): head for head in long}
     read = ("ratio of each stage", teeth_head(measures))
-    heads = ("stages", "status", *names, *read, "seconds", *single)
+    typed = "types" in rows[0]
+    heads = ("types" if typed else "stages", "status", *names, *read, "seconds", *single)
     cells = [[*_count(row, counted, measures), *_each(row, most, measures)] for row in rows]
     table = Table(
-        "numbers of stages",
+        "types of stages" if typed else "numbers of stages",
         heads,
         cells,
         page_only=(*[*names][2:], read[1]),
@@ -276,14 +277,19 @@ def counts(result: Result, measures: Measures) -> Section | None:
         wrap=9,
     )
     words = [
-        f"Impossible with {row['stages']} {'stage' if row['stages'] == 1 else 'stages'}: "
+        f"Impossible with {row.get('types') or _number(row['stages'])}: "
         f"{series_of(grouped(row['conflict']))} cannot be met"
         f"{' together' * (len(row['conflict']) > 1)}."
         for row in rows
         if row["conflict"]
     ]
     shown = (table, "\n".join(words)) if words else (table,)
-    return Section("Number of stages", words=words, tables=(table,), terminal=shown)
+    title = "Types of the stages" if typed else "Number of stages"
+    return Section(title, words=words, tables=(table,), terminal=shown)
+
+
+def _number(stages: int) -> str:
+    return f"{stages} {'stage' if stages == 1 else 'stages'}"
 
 
 def _count(row: Mapping[str, Any], best: Result, measures: Measures) -> list[Any]:
@@ -292,7 +298,7 @@ def _count(row: Mapping[str, Any], best: Result, measures: Measures) -> list[Any
     more = None if value is None or not best.value else 100.0 * (value / best.value - 1.0)
     beyond = row["status"] == "limit" and None not in (bound, best.value) and bound > best.value
     return [
-        row["stages"],
+        row.get("types", row["stages"]),
         "not better, by its bound" if beyond else VERDICTS[row["status"]][0],
         cell(value, unit, measures),
         None if more is None else Cell(more, f"{more:.2f}"),
@@ -305,8 +311,8 @@ def _each(row: Mapping[str, Any], most: int, measures: Measures) -> list[Any]:
     """Ratios, gears and seconds of a number of stages; then each ratio and gear alone."""
     modules = map(measures.of_module, row["modules_mm"])
     gears = list(zip(row["ratios"], modules, row["teeth"], strict=True))
-    teeth = "; ".join(f"{number(m)}, {number(a)}/{number(b)}" for _, m, (a, b) in gears)
-    single = [value for u, m, (a, b) in gears for value in (u, m, a, b)]
+    teeth = "; ".join(f"{number(m)}, {'/'.join(map(number, each))}" for _, m, each in gears)
+    single = [value for u, m, (a, b, *_) in gears for value in (u, m, a, b)]
     return [
         "  ".join(f"{u:.3f}" for u, *_ in gears),
         teeth,

@@ -16,10 +16,15 @@ from gearopt.scenes.drive.explain.tried import Case, any_possible
 from gearopt.scenes.drive.layout import APART, at_once_of_count, gears_of
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.sizing import of_count, sized
+from gearopt.scenes.drive.stage_types import held_as, open_types, words
 from gearopt.scenes.drive.without import without
 from gearopt.scenes.explaining.possible import UNKNOWN, Verdict
 from gearopt.scenes.reading.ask import Ask
 
+OF_ONE = (
+    "remedies are of one choice of types: gearopt explain of a file with one type for each "
+    "[[stage]] names them"
+)
 ANY_DESIGN_GAP = 1e9  # gap of a design that need not be the best
 
 
@@ -28,6 +33,8 @@ def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies
 
     soon: of a drive that ratings limit, its conflict at most; None where that is not known soon.
     """
+    if open_types(scene):
+        return Remedies(message=OF_ONE)
     if scene.layout is not None and scene.layout.together and scene.several:
         return _of_boxes(without(scene, "processes"), clock)
     gears = gears_of(result)
@@ -69,7 +76,7 @@ def _of_boxes(scene: Scene, clock: Clock) -> Remedies:
 def possible(scene: Scene, clock: Clock) -> Verdict:
     """Whether a drive has a design; of one that is laid out not known where it has gears."""
     case = Case(scene, clock)
-    answer = any_possible(case, [t for n in scene.counts for t in trains(scene.held(n))])
+    answer = any_possible(case, [t for one in scene.each for t in trains(one)])
     return UNKNOWN if answer and scene.layout is not None else Verdict(answer)
 
 
@@ -86,11 +93,12 @@ def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
     clock = Clock(ask.budget, of_others(ask.watch))
     if result.value is None:
         return Explanation(result, message="no design was found in time", seconds=clock.seconds)
-    if scene.several:
-        count = len(result.design["stages"])
-        held = influences(scene.held(count), ask, result)
-        words = f"the number of stages is held at {count}"
-        return replace(held, message="; ".join(filter(None, (held.message, words))))
+    if len(scene.each) > 1:
+        one = held_as(scene, result.design)
+        kept = f"types of the stages are held: {words(one)}"
+        kept = f"number of stages is held at {one.counts[0]}" if scene.several else kept
+        held = influences(one, ask, result)
+        return replace(held, message="; ".join(filter(None, (held.message, f"the {kept}"))))
     if scene.layout is not None:
         from gearopt.scenes.drive.explain import box_remedies
 

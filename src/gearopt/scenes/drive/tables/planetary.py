@@ -9,7 +9,7 @@ from pydantic import Field, PrivateAttr, create_model
 from gearopt.formulations.drive.planetary import HELD, ORDERS
 from gearopt.scenes.drive.tables.rating import GearTable
 from gearopt.scenes.reading.fields import Table, advised, choice, number, quantity, truth, whole
-from gearopt.scenes.reading.lists import several, span
+from gearopt.scenes.reading.lists import one_or_several, several, span
 from gearopt.units import Quantity
 
 PARALLEL, PLANETARY, INTERNAL = TYPES = ("parallel", "planetary", "internal")
@@ -96,10 +96,11 @@ def bent(table: Table) -> GearTable:
 class PlanetaryKeys(Table):
     """What a stage has that is no pair of external gears."""
 
-    type: Annotated[str, TYPE] = Field(
+    type: Annotated[Any, one_or_several(TYPE)] = Field(  # a word, or a tuple of them
         PARALLEL,
         description="parallel: a pair of external gears; planetary: sun, planets and ring; "
-        "internal: a pinion in a ring. Sized by ISO 6336 in whole teeth, or all given and rated",
+        "internal: a pinion in a ring. Sized by ISO 6336 in whole teeth, or all given and rated. "
+        "A list, of gears that are sized: the best of these types is found",
     )
     fixed: Annotated[str | None, choice(*HELD)] = Field(
         None,
@@ -184,9 +185,14 @@ class PlanetaryKeys(Table):
         return copy
 
     @property
+    def types(self) -> tuple[str, ...]:
+        """The types to choose from."""
+        return self.type if isinstance(self.type, tuple) else (self.type,)
+
+    @property
     def epicyclic(self) -> bool:
         """Whether the stage has planets or a ring."""
-        return self.type != PARALLEL
+        return self.types != (PARALLEL,)
 
     @property
     def teeth_keys(self) -> tuple[str, str]:
