@@ -43,6 +43,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "servo_pair_by_agma": "A pair of 50 W.",
         "idler": "A pinion, an idler and a wheel: the idler's teeth are chosen, too, proven.",
         "planetary_stage": "Sun, planets and ring: teeth, number of planets, module and width.",
+        "planetary_or_parallel": "`type` is a list: every choice is sized, the best found.",
         "planetary_gearhead": "100:1 in two planetary stages.",
         "wind_gearbox": "5 MW: two planetary stages and a parallel one, increasing the speed.",
         "wind_planetary_stage": "A planetary stage as a report has it, rated mesh by mesh.",
