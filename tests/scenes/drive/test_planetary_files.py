@@ -340,3 +340,13 @@ def test_what_stages_with_a_ring_may_have_instead_is_found_and_true(name):
     assert keys <= {change.key.split(".")[-1] for way in ways for change in way.changes}
     for way in ways:
         assert gearopt.solve(asked, way.edits).value is not None
+
+
+def test_a_limit_on_the_ring_is_in_the_conflict_that_it_makes():
+    """12 teeth of the sun and a ratio of 5.25 ask for 51 of the ring, 40 are allowed."""
+    asked = tomllib.loads(STAGE.read_text())
+    del asked["duty"]["output_speed"], asked["x-expected"]
+    asked["duty"]["ratio"] = 5.25
+    explained = gearopt.explain(asked, {"limits.wheel_teeth": [20, 40]})
+    assert "ring_teeth_high[1]" in explained.conflict
+    assert any("51" in change.write for way in explained.remedies for change in way.changes)

@@ -47,7 +47,7 @@ def of_planets(stage: Stage) -> Iterator[str]:
 def without_planets(stage: Stage, dropped: set[str]) -> Stage:
     """The stage without what is dropped; ranges of teeth are then wider."""
     first = stage.options[0].planets
-    wider = {member: _wider(member, getattr(first, member), dropped) for member in MEMBERS}
+    wider = {m: _wider(m, getattr(first, m), dropped, first.held == "sun") for m in MEMBERS}
     changed: dict[str, Any] = dict(wider)
     changed |= {"spaced": False} if "equally_spaced" in dropped else {}
     changed |= {"order": "any"} if "mesh_order" in dropped else {}
@@ -69,10 +69,14 @@ def without_planets(stage: Stage, dropped: set[str]) -> Stage:
     return replace(stage, options=tuple(options), wheel_teeth=(int(z2[0]), most), **teeth)
 
 
-def _wider(member: str, span: tuple[float, float], dropped: set[str]) -> tuple[float, float]:
+def _wider(
+    member: str, span: tuple[float, float], dropped: set[str], drives: bool
+) -> tuple[float, float]:
     """A range of teeth without the ends that are dropped."""
     low, high = span
     few, many = ({f"{member}_teeth", f"{member}_teeth_{end}"} & dropped for end in ("low", "high"))
+    if member == "ring" and not drives:  # the ratio limits it
+        return 1.0 if few else low, LARGE if many else high
     low = max(1.0, math.floor(low / WIDER)) if few else low
     return low, high if not many or high >= LARGE else float(math.ceil(high * WIDER))
 
