@@ -71,7 +71,7 @@ from gearopt.scenes.drive.toothings import (
     toothings,
 )
 from gearopt.scenes.drive.without_planets import check_standard, no_limits
-from gearopt.scenes.explaining.numbers import eased, in_reverse, written
+from gearopt.scenes.explaining.numbers import around, in_reverse
 from gearopt.scenes.parts import Duty
 from gearopt.scenes.reading.choices import Between, Choice, Preferred, values_of
 from gearopt.scenes.reading.fields import Table, refuse, whole, words
@@ -185,7 +185,8 @@ class Scene(Table):
             check_width(stage, self.gears, ("stage", k) if self.stage else ("gears",))
             if self.teeth is not None and not self.modules(stage):
                 place = ("stage", k, "module") if stage.size else ("limits", "module")
-                raise refuse("holds no module that [teeth] allows", self._around(stage), place)
+                instead = around(stage.size or self.limits.module, self.teeth.sizes)
+                raise refuse("holds no module that [teeth] allows", instead, place)
         check_driving(self)
         check_idlers(self, self._lacks("beside an idler"))
         check_planetary(self)
@@ -434,17 +435,6 @@ class Scene(Table):
             return ends[:1]
         series = self.teeth.sizes
         return tuple(m for m in series if not ends or ends[0] <= m <= ends[1])
-
-    def _around(self, own: StageTable) -> list[str]:
-        """Return the narrowest range of modules of [teeth] around one that holds none of them."""
-        span = own.size or self.limits.module
-        assert span is not None and self.teeth is not None
-        series = self.teeth.sizes
-        below = max((m for m in series if m < span[0].exact[0]), default=series[0])
-        above = min((m for m in series if m > span[1].exact[0]), default=series[-1])
-        ends = eased(span[0].of(below), 1.0, -1), eased(span[1].of(above), 1.0, 1)
-        module_range = written(ends, ("limits", "module"))
-        return module_range if isinstance(module_range, list) else [module_range, module_range]
 
     @property
     def given(self) -> bool:

@@ -282,3 +282,12 @@ def apart(before: Any, after: Any) -> float:
         return math.prod(apart(a, b) for a, b in zip(before, after, strict=True))
     a, b = (float(v.number if isinstance(v, Quantity) else v) for v in (before, after))
     return max(a, b) / min(a, b) if min(a, b) > 0.0 else math.inf
+
+
+def around(ends: Any, series: Sequence[Fraction]) -> list[str]:
+    """The narrowest range of a series of modules [mm] around one, by its ends, that holds none."""
+    below = max((m for m in series if m < ends[0].exact[0]), default=series[0])
+    above = min((m for m in series if m > ends[1].exact[0]), default=series[-1])
+    wider = eased(ends[0].of(below), 1.0, -1), eased(ends[1].of(above), 1.0, 1)
+    module_range = written(wider, ("limits", "module"))
+    return module_range if isinstance(module_range, list) else [module_range, module_range]
