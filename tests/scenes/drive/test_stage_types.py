@@ -101,7 +101,7 @@ WRONG = {
     "of another": ({"type": ["parallel", "internal"]}, 'needs type = "planetary"'),
     "given": ({"limits": None}, "of gears that are to be sized"),
     "layout": ({"layout": {"shaft_stress": "40 MPa"}}, "a [layout] takes one"),
-    "no teeth": ({"teeth": None}, "needs a table [teeth]"),
+    "no teeth": ({"teeth": None}, "whole teeth are chosen"),
 }
 
 
