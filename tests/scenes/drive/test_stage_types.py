@@ -14,18 +14,18 @@ KEYS = {"planetary": ("planets",), "parallel": ("wheel_teeth",), "internal": ("r
 OWN = {"planets": 3, "wheel_teeth": [20, 480], "ring_teeth": [60, 160]}
 
 
-def asked(*types, ratio=5.2, **more):
-    """A drive of stages of these types, with the keys of each that it may have; more: of all."""
+def asked(*types, ratio=5.2, pinion_teeth=(24, 32)):
+    """A drive of stages of these types, with the keys of each that it may have."""
     drive = tomllib.loads(FILE.read_text())
     del drive["x-expected"], drive["duty"]["output_speed"]
     drive["duty"]["ratio"] = ratio
-    drive["limits"]["pinion_teeth"] = [24, 32]
+    drive["limits"]["pinion_teeth"] = list(pinion_teeth)
     drive["teeth"] = {"modules": ["2 mm", "3 mm"]}
     drive["stage"] = []
     for kinds in types:
         each = [kinds] if isinstance(kinds, str) else kinds
         names = [name for kind in each for name in KEYS[kind]]
-        drive["stage"].append({"type": kinds} | {name: OWN[name] for name in names} | more)
+        drive["stage"].append({"type": kinds} | {name: OWN[name] for name in names})
     return drive
 
 
@@ -48,7 +48,7 @@ def held_to_files(types, **drive):
 
 
 def test_the_best_type_is_that_of_separate_files():
-    found = held_to_files([["planetary", "parallel"]])
+    found = held_to_files([["planetary", "parallel"]], pinion_teeth=[30, 32])
     assert found.design["stages"][0]["type"] == "planetary"
     page = found.to_html()
     assert "Types of the stages" in page and "every choice of types" in page

@@ -147,6 +147,8 @@ def posed(scene: Scene, method: str) -> Model:
 
 def rate(scene: Scene, ask: Ask) -> Result:
     """Rating of gears that are all given: `rated.rate`."""
+    if open_types(scene):
+        raise SolveError("a rating is of one type for each [[stage]]: write it, and all its gears")
     from gearopt.scenes.drive.rating.rated import rate as rate_given
 
     return rate_given(scene, ask)

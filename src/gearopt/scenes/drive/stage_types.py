@@ -34,7 +34,7 @@ def check_types(scene: "Scene") -> None:
     if not open_types(scene):
         return
     rule = ""
-    if not scene.to_size or scene.given:
+    if not scene.to_size:
         rule = "has several types to choose from, of gears that are to be sized"
     elif scene.layout is not None:
         rule = "has several types, and a [layout] takes one"
