@@ -278,7 +278,7 @@ LIMITS = {  # of internal pairs: the flaw, and what happens by so many mm
 
 
 def _internal(pair: GearPair, of: str, called: tuple[str, str]) -> list[Flaw]:
-    """Return what an internal pair and its cutter break of their limits."""
+    """Flaws of an internal pair and its cutter, by the limits that they break."""
     left, of_pair, module = margins(pair), [], pair.normal_module
     for key, (name, text) in LIMITS.items():
         margin = float(left.get(key, 0.0))

@@ -134,7 +134,7 @@ class Shaft:
 
 
 def twist_of_meshes(meshes: float) -> float:
-    """Return what a pinion in several meshes at once adds to K of `shaft_misalignment`.
+    """The part of K of `shaft_misalignment` that is due to a pinion in several meshes at once.
 
     B* - 1 = 2 (100 - k)/k for k = 100/p per cent of its torque in each of p meshes: 4 of three.
     Source: ISO 6336-1:2006, 7.5, method C [memory: unverified].

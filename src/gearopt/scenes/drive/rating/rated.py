@@ -7,7 +7,7 @@ from typing import Any
 
 from gearopt.errors import CertificateError, SolveError
 from gearopt.formulations.drive.design import DriveDesign, drive_design, of_pairs
-from gearopt.formulations.drive.rating import DriveRating, MeshRating
+from gearopt.formulations.drive.rating import DriveRating, MeshRating, ShaftRating
 from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import typed, untyped
 from gearopt.physics.blanks import Blank
@@ -342,10 +342,9 @@ def _by(
     each = zip(meshes, scene.stage_tables, strict=True)
     gears = tuple(gear_row(mesh, k, own_safety(own)) for mesh, own in each for k in (0, 1))
     factors = tuple(shared(scene, row) for mesh in meshes for row in factor_rows(asked, mesh))
-    drive = drivers(scene)
-    turned = hands([table.pinion_hand for table in scene.stage] or [None] * len(pairs), drive)
-    (efficiency, error), idle = _efficiency(rows, meshes), idlers(scene.stage)
-    known = [own.as_mesh for own in scene.stage_tables]
+    by_hand = [table.pinion_hand for table in scene.stage] or [None] * len(pairs)
+    turned = hands(by_hand, drivers(scene))
+    efficiency, error = _efficiency(rows, meshes)
     named = mesh_names(scene)
 
     def title(mesh: int) -> str:
@@ -365,12 +364,7 @@ def _by(
         gears=gears,
         meshes=rows,
         factors=factors,
-        shafts=shafts_of_stages(known, *_largest_load(scene))
-        if named
-        else tuple(
-            replace(row, torque_Nm=0.0) if row.shaft in idle else row
-            for row in shaft_rows(pairs, turned, drive, *_largest_load(scene))
-        ),
+        shafts=_shafts(scene, pairs, turned),
         teeth=tuple(
             tooth_geometry(mesh.stage, mesh.pair, k, turned[mesh.stage - 1])
             for mesh in meshes
@@ -389,10 +383,22 @@ def _by(
         ),
         by=standard.NAME,
         static=tuple(row for mesh in meshes for row in static_rows(mesh, still)),
-        idlers=idle,
+        idlers=idlers(scene.stage),
         named=named,
     )
     return replace(rated, safe=rated.met, life_h=rated.shortest_lived.life_h)
+
+
+def _shafts(
+    scene: Scene, pairs: tuple[GearPair, ...], turned: Sequence[str]
+) -> tuple[ShaftRating, ...]:
+    """Shafts of a drive under its largest load; turned: hands of pinions. Idlers have no torque."""
+    if mesh_names(scene):
+        known = [own.as_mesh for own in scene.stage_tables]
+        return shafts_of_stages(known, *_largest_load(scene))
+    rows = shaft_rows(pairs, turned, drivers(scene), *_largest_load(scene))
+    idle = idlers(scene.stage)
+    return tuple(replace(row, torque_Nm=0.0) if row.shaft in idle else row for row in rows)
 
 
 def _efficiency(
