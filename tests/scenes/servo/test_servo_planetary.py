@@ -20,7 +20,7 @@ PAIRS = {"module": "0.5 mm", "pinion_teeth": 20, "wheel_teeth": 100}
 TENTH = Decimal("0.1")
 REFUSED = [  # edits, dropped, key, words, whether what is to be written is accepted
     ([(("planetary", "ring_teeth"), 61)], [], "planetary.ring_teeth", "no multiple of the 3", True),
-    ([(("planetary", "planet_teeth"), 13)], [], "planetary.planet_teeth", "no room", True),
+    ([(("planetary", "planet_teeth"), 13)], [], "planetary.ring_teeth", "no room", True),
     ([(("planetary", "planets"), 6)], [], "planetary.planets", "no room", True),
     ([(("planetary", "ring_shift"), 1)], [], "planetary.ring_shift", "no room", True),
     ([(("planetary", "ring_shift"), TENTH)], [], "planetary.ring_shift", "thicker", True),
