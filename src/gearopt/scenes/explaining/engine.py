@@ -344,7 +344,7 @@ def _narrow_by_designs(
 ) -> None:
     """Lower a factor to what known designs need, until a little less does not suffice.
 
-    As long as there are other designs for less the steps grow; of rough ones there are none.
+    As long as designs for less need nearly as much the steps grow; of rough ones there are none.
     """
     near = min(close, FACTOR_TOLERANCE)
     _lower(asked, known, near)
@@ -352,29 +352,30 @@ def _narrow_by_designs(
     while close < ROUGH and known.high > known.low * near * (1.0 + NEGLIGIBLE):
         if known.doubts >= asked.doubts or asked.clock.over or clock.over:
             return
-        factor = max(known.high / step, between(known.low, known.high))
+        factor, before = max(known.high / step, between(known.low, known.high)), known.high
         there = asked.edited(known.at(factor))
         if there is not None and _same(there, asked.edited(known.at(known.high))):
             return  # of whole numbers
         sure, left = asked.sure or asked.possible, clock.left.seconds
         verdict = UNKNOWN if there is None else asked.ask(there.scene, sure, left or math.inf)
         take(known, factor, verdict.answer)
-        step = min(step**FASTER, REACH) if verdict.answer else near
         if verdict.answer:
             _lower(asked, known, near)
+        slow = verdict.answer and known.high > before / near**FASTER
+        step = min(step**FASTER, REACH) if slow else near
 
 
 def _lower(asked: FeasibilityQuestions, known: FactorBracket, near: float) -> None:
-    """Lower the factor that is known to suffice to what known designs need."""
+    """Lower the factor that is known to suffice to what known designs need, by halves."""
     assert asked.likely is not None
-    low, step = max(1.0, known.low), near
+    low = max(1.0, known.low)
     while known.high > low * near * (1.0 + NEGLIGIBLE) and not asked.clock.over:
-        factor = max(known.high / step, between(low, known.high))
+        factor = between(low, known.high)
         there = asked.edited(known.at(factor))
         if there is not None and asked.ask(there.scene, asked.likely).answer:
-            known.high, step = factor, min(step**FASTER, REACH)
+            known.high = factor
         else:
-            low, step = factor, max(step ** (1.0 / FASTER**2), near)
+            low = factor
 
 
 def _same(one: Edited, other: Edited | None) -> bool:
