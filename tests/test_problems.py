@@ -72,6 +72,8 @@ LONG = (
         "same_materials",
     ),
     "wind_gearbox",
+    "planetary_or_parallel",
+    "idler",
     "planetary_gearhead",
     "planets_that_do_not_fit",
     "elevator_processes_rated",

@@ -1,6 +1,8 @@
 """Overload and safety factors that a stage has of its own, in place of those of [rating]."""
 
 import re
+import tomllib
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -30,18 +32,17 @@ def of_rating(text, line):
     )
 
 
-def solved(tmp_path, text, **options):
-    path = tmp_path / "file.toml"
-    path.write_text(text)
-    return gearopt.solve(path, **options)
+@cache
+def solved(text):
+    return gearopt.solve(tomllib.loads(text))
 
 
-@pytest.mark.parametrize(
-    "line", ["overload_factor = 2", "minimum_contact_safety = 1.3", "minimum_bending_safety = 5"]
-)
-def test_factors_of_every_stage_are_those_of_the_rating(line, tmp_path):
-    by_stage = solved(tmp_path, of_stages(ELEVATOR, line, line))
-    whole = solved(tmp_path, of_rating(ELEVATOR, line))
+def test_factors_of_every_stage_are_those_of_the_rating():
+    lines = "overload_factor = 1.5", "minimum_contact_safety = 1.3", "minimum_bending_safety = 5"
+    whole = ELEVATOR
+    for line in lines:
+        whole = of_rating(whole, line)
+    by_stage, whole = solved(of_stages(ELEVATOR, *["\n".join(lines)] * 2)), solved(whole)
     assert by_stage.status == whole.status == "optimal"
     assert by_stage.value == pytest.approx(whole.value, rel=1e-13)
     assert by_stage.limits.keys() == whole.limits.keys()
@@ -49,28 +50,28 @@ def test_factors_of_every_stage_are_those_of_the_rating(line, tmp_path):
         assert by_stage.limits[name] == pytest.approx(used, rel=1e-12)
 
 
-def test_one_stage_of_its_own_lies_between(tmp_path):
+STRICTER = of_stages(ELEVATOR, "minimum_contact_safety = 1.3", "# as [rating]")
+
+
+def test_one_stage_of_its_own_lies_between():
     """Stricter on one stage than on none, less strict than on both; the limits say which."""
-    line = "minimum_contact_safety = 1.3"
-    one = solved(tmp_path, of_stages(ELEVATOR, line, "# as [rating]"))
-    none = solved(tmp_path, ELEVATOR)
-    both = solved(tmp_path, of_rating(ELEVATOR, line))
-    assert none.value < one.value < both.value
-    gears = one.design["rating"]["beside"]["gears"]
+    first, none = solved(STRICTER), solved(ELEVATOR)
+    both = solved(of_rating(ELEVATOR, "minimum_contact_safety = 1.3"))
+    assert none.value < first.value < both.value
+    gears = first.design["rating"]["beside"]["gears"]
     for gear in gears:
         asked = 1.3 if gear["stage"] == 1 else 1.0
         name = f"{gear['member']}_contact_iso[{gear['stage']}]"
-        assert one.limits[name] == pytest.approx(asked / gear["contact_safety"], rel=1e-12)
-        assert one.limits[name] <= 1.0 + 1e-9
+        assert first.limits[name] == pytest.approx(asked / gear["contact_safety"], rel=1e-12)
+        assert first.limits[name] <= 1.0 + 1e-9
 
 
-def test_key_figures_name_what_is_nearest_where_requirements_differ(tmp_path):
-    names = {}
-    for key, lines in (("own", ("minimum_contact_safety = 1.3", "#")), ("same", ("#", "#"))):
-        result = solved(tmp_path, of_stages(ELEVATOR, *lines))
-        names[key] = [tile.name for tile in tiles(result, METRIC)]
-    assert "S_H nearest to that required, contact by ISO 6336" in names["own"]
-    assert "minimum S_H, contact by ISO 6336" in names["same"]
+def test_key_figures_name_what_is_nearest_where_requirements_differ():
+    differing, same = (
+        [tile.name for tile in tiles(solved(t), METRIC)] for t in (STRICTER, ELEVATOR)
+    )
+    assert "S_H nearest to that required, contact by ISO 6336" in differing
+    assert "minimum S_H, contact by ISO 6336" in same
 
 
 def test_given_gears_are_rated_with_them(tmp_path):
@@ -85,13 +86,13 @@ def test_given_gears_are_rated_with_them(tmp_path):
 
 
 @pytest.mark.slow
-def test_real_valued_sizes_take_them(tmp_path):
+def test_real_valued_sizes_take_them():
     line = "minimum_contact_safety = 1.3"
     text = (PROBLEMS / "sized_and_rated.toml").read_text().partition("[x-expected]")[0]
     text = re.sub(r"\[teeth\]\n(?:[^\[\n].*\n)*", "", text)
     count = text.count("[[stage]]\n")
-    by_stage = solved(tmp_path, of_stages(text, *[line] * count))
-    whole = solved(tmp_path, of_rating(text, line))
+    by_stage = solved(of_stages(text, *[line] * count))
+    whole = solved(of_rating(text, line))
     assert by_stage.value == pytest.approx(whole.value, rel=1e-6)
     assert by_stage.bound <= whole.value * (1.0 + 1e-9)
 
