@@ -199,7 +199,7 @@ J for them: the section is where a tangent of 60 degrees touches the fillet of t
 for the ring's cutter, as ISO 6336-3 has it, Y and K_f are as outside, and a J of yours may be
 given. K_B is that of the rim outside the root. No value of either was found in print: I, J and K_B
 are *unverified*; load angles and sections are those of two printed ISO ratings. 2101 has no
-K_gamma: of planetary stages give K_o K_gamma as the overload factor.
+K_gamma: of planetary stages it is given beside K_o (`given={"K_gamma": 1.1}`), which it multiplies.
 """
 
 

@@ -173,7 +173,6 @@ def test_materials_of_a_ring_are_asked_for_by_its_name():
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"rating": {"standard": "agma"}}, r'rating\.standard = "agma": .*AGMA 908.*= "iso6336"'),
         ({"rating": None}, r'rating: is missing: .*\[rating\] with standard = "iso6336"'),
         (
             {"objective.minimise": "total_length"},

@@ -218,7 +218,8 @@ class Planets:
 
     count N of planets, 0: a pinion in a ring; held: of HELD; fewer: twice the teeth that a planet
     has less. sun, planet, ring: ranges of teeth. spaced: equally; order: of ORDERS; clearance of
-    the tips of neighbours [normal modules]. widest: outside diameter [mm] of the ring.
+    the tips of neighbours [normal modules]. widest: outside diameter [mm] of the ring. fewest: SUN
+    or PLANET, whichever has fewer teeth (a sun of as many, too), None: either.
     """
 
     cutting: Cutting
@@ -232,6 +233,7 @@ class Planets:
     order: str = "any"
     clearance: float = 0.5
     widest: float = math.inf
+    fewest: int | None = None
 
     def teeth(self, pair: GearPair) -> Three:
         """Numbers of teeth of sun (or pinion), planet and ring of pairs, above 0."""
@@ -279,6 +281,9 @@ class Planets:
             text = "a" if self.order == "simultaneous" else "no"
             alike = (np.mod(sun, self.count) == 0) == (self.order == "simultaneous")
             yield f"{text} multiple of {self.count} planets as z_s (mesh_order)", alike
+        if self.fewest is not None:
+            text = "a sun of no more teeth" if self.fewest == SUN else "a sun of more teeth"
+            yield f"{text} than a planet", np.less_equal(sun, planet) == (self.fewest == SUN)
 
     def gears(self, pair: GearPair) -> tuple[Gear, Gear, Gear, Any]:
         """Sun, planet (or pinion) and ring of pairs, and their distance [mm]."""
@@ -489,7 +494,8 @@ class Ready:
 class InPlanetaryMesh:
     """A standard that rates one mesh of stages with planets, or a pinion in a ring.
 
-    with_ring: whether the mesh is that of planet and ring, else of sun and planet.
+    with_ring: whether the mesh is that of planet and ring, else of sun and planet. turned: whether
+    the planet is taken as the pinion of a sun, as by AGMA where it has fewer teeth.
     """
 
     standard: Any
@@ -497,14 +503,16 @@ class InPlanetaryMesh:
     with_ring: bool
     suffix: str
     monotone: bool = False
+    turned: bool = False
 
     def mesh(self, pair: GearPair) -> GearPair:
         """The mesh, of pairs that stand for stages."""
-        return self.planets.mesh(pair, self.with_ring)
+        mesh = self.planets.mesh(pair, self.with_ring)
+        return replace(mesh, pinion=mesh.wheel, wheel=mesh.pinion) if self.turned else mesh
 
     def _loads(self, pair: GearPair, fits: Any) -> tuple[Any, Any]:
         """`Planets.slower`; torques are NaN where gears do not fit, or a ring is large or thin."""
-        torque, speed = self.planets.slower(pair, self.with_ring)
+        torque, speed = self.planets.slower(pair, self.with_ring or self.turned)
         fits = fits & self.planets.possible(pair.pinion_teeth, pair.wheel_teeth)
         ring = self.planets.gears(pair)[RING]
         if math.isfinite(self.planets.widest):
@@ -523,7 +531,7 @@ class InPlanetaryMesh:
 
     def like(self, other: Any) -> bool:
         """Whether `prepared` of another standard returns the same."""
-        if not isinstance(other, InPlanetaryMesh) or self.with_ring != other.with_ring:
+        if not isinstance(other, InPlanetaryMesh):
             return False
         alike = self._shape == other._shape
         return bool(alike and self.standard.like(other.standard))
@@ -532,7 +540,8 @@ class InPlanetaryMesh:
     def _shape(self) -> Any:
         """What gears and their room depend on."""
         own = self.planets
-        return own.cutting, own.held, own.fewer, own.count, own.clearance, own.spaced
+        made = own.cutting, own.held, own.fewer, own.count, own.clearance, own.spaced
+        return made, self.with_ring, self.turned
 
     def prepared(self, pair: GearPair) -> Ready:
         """Numbers of pairs (n,) that `rows` takes, of any load and width."""

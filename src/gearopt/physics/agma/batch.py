@@ -11,6 +11,7 @@ import numpy as np
 
 from gearopt.physics.agma import stress
 from gearopt.physics.agma.rating_factors import (
+    SHARING,
     Case,
     Practice,
     Steel,
@@ -63,7 +64,8 @@ def safeties(case: Case, pitting: Any, bending: tuple[Any, Any]) -> tuple[Any, A
     one: dict[str, Any] = {symbol: computed(case, symbol).value for symbol in CONSTANT}
     diameter, operation = case.diameter, case.operation
     load = stress.tangential_load(operation.power, operation.pinion_speed, diameter)
-    shared = one["K_o"] * (value(case, "K_v") * value(case, "K_m"))
+    overload = one["K_o"] * given.get(SHARING, 1.0)
+    shared = overload * (value(case, "K_v") * value(case, "K_m"))
     size, rim = value(case, "K_s"), value(case, "K_B")
     strong_f, strong_h = _strengths(case, one)
     width = case.pair.face_width

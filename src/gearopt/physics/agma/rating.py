@@ -11,6 +11,7 @@ from gearopt.physics.agma.rating_factors import (
     EDITIONS,
     PAIRED,
     SHARED,
+    SHARING,
     Case,
     Practice,
     Steel,
@@ -43,12 +44,12 @@ def rate(
 ) -> Rating:
     """Return the rating of a pair.
 
-    given: factors by symbol, of PAIRED as pairs, of SHARED as numbers; s_at and s_ac in MPa, C_p in
+    given: factors by symbol, of PAIRED as pairs, else as numbers; s_at and s_ac in MPa, C_p in
     sqrt(MPa). ValueError for a pair that AGMA 908 refuses (unless I and J are given), a symbol that
     is not known, a power, speed, K_o or given factor that is not above 0, and what the laws refuse.
     """
     practice, given = practice or Practice(), dict(given or {})
-    check_symbols(given, (*SHARED, *PAIRED))
+    check_symbols(given, (*SHARED, SHARING, *PAIRED))
     if practice.edition not in EDITIONS:
         raise ValueError(f"no edition {practice.edition!r}; known: {', '.join(EDITIONS)}")
     check_numbers(operation, "overload factor", given)
@@ -66,8 +67,9 @@ def _results(case: Case, found: dict[str, Factor]) -> Rating:
     width, weaker = case.pair.face_width, (one["K_T"], one["K_R"])
     transverse = case.pair.pinion.reference_diameter / case.pair.pinion_teeth
     bent, pressed, s_f, s_h = [], [], [], []
+    overload = one["K_o"] * one.get(SHARING, 1.0)
     for k in (0, 1):
-        product = one["K_o"] * one["K_v"] * one["K_m"] * one["K_s"][k]
+        product = overload * one["K_v"] * one["K_m"] * one["K_s"][k]
         of_rim = product * one["K_B"][k]
         bent.append(float(stress.bending_stress(load, width, transverse, one["J"][k], of_rim)))
         own = one["C_p"], load, width, diameter, one["I"], product * one["C_f"]

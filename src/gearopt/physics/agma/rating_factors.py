@@ -18,6 +18,7 @@ from gearopt.physics.rating import Factor, Operation
 SURFACE_HARD_KINDS = ("carburised", "nitrided")  # whose pinions count as 48 HRC and more
 EDITIONS = ("D04", "B88")
 PAIRED = ("K_B", "K_s", "J", "s_at", "s_ac", "Y_N", "Z_N", "C_H")  # one value for each gear
+SHARING = "K_gamma"  # mesh load factor of planets, which AGMA has not: given alone, beside K_o
 SHARED = ("K_o", "K_v", "K_m", "K_R", "K_T", "C_f", "C_p", "I")
 
 
@@ -132,6 +133,7 @@ def ring_backup(gear: Gear) -> Any:
     return (gear.root_diameter - gear.outside) / (gear.tip_diameter - gear.root_diameter)
 
 
+@np.errstate(invalid="ignore", divide="ignore")  # NaN of a ring without a rim
 def _rims(case: Case) -> tuple[Any, Any]:
     law = factors.rim_factor if case.practice.edition == "D04" else factors.rim_factor_b88
     first, second = (1.0 if ratio is None else law(ratio) for ratio in case.practice.backup)
@@ -168,8 +170,9 @@ _LAWS = {
 
 
 def all_factors(case: Case) -> list[Factor]:
-    """Return all factors of a case, given ones in the place of computed ones."""
-    return [computed(case, symbol) for symbol in (*SHARED, *PAIRED)]
+    """Return all factors of a case, given ones in the place of computed ones; SHARING if given."""
+    shown = [SHARING] if SHARING in case.given else []
+    return [computed(case, symbol) for symbol in (SHARED[0], *shown, *SHARED[1:], *PAIRED)]
 
 
 def computed(case: Case, symbol: str) -> Factor:

@@ -1,5 +1,6 @@
 """Stages with planets, or a pinion in a ring: how their tables fit together, and their ways."""
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -8,7 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic_core import PydanticCustomError
 
-from gearopt.formulations.drive.planetary import LARGE, Cutting, InPlanetaryMesh, Planets
+from gearopt.formulations.drive.planetary import (
+    LARGE,
+    PLANET,
+    SUN,
+    Cutting,
+    InPlanetaryMesh,
+    Planets,
+)
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import Stage
 from gearopt.formulations.strength.standard import Option
@@ -57,6 +65,7 @@ NAMES = {  # of what checks call the gears of a pair
     INTERNAL: {"wheel": "ring"},
 }
 OF_INNER = {"pinion": "planet", "wheel": "ring"}
+OF_MESH = ("I", "K_B", "K_s", "J", "s_at", "s_ac", "Y_N", "Z_N", "C_H")  # given to AGMA
 OF_GEAR = (  # keys of gears that no stage with planets or a ring takes
     *("contacts", "reversed_load", "face_width", "rim_thickness", "web_thickness"),
     "web_over_face_width",
@@ -151,6 +160,7 @@ def check_planetary(scene: "Scene") -> None:
                 raise refuse(rule, at=("stage", k, name), action="remove")
         _check_gears(scene, own, k)
         _check_teeth(scene, own, k)
+        _check_given(scene, own, k)
 
 
 def _check_gears(scene: "Scene", own: StageTable, k: int) -> None:
@@ -169,7 +179,9 @@ def _check_gears(scene: "Scene", own: StageTable, k: int) -> None:
     if own.ring.outside_diameter is not None and gear_of(own.ring).rim_over_module is not None:
         rule = "conflicts with outside_diameter; one is enough"
         raise refuse(rule, at=("stage", k, "ring", "rim_over_module"), action="remove")
-    if (rim := gear_of(own.ring).rim_over_module) is not None and rim <= THIN_RING:
+    iso = scene.rating is None or scene.rating.standard != "agma"
+    rim = gear_of(own.ring).rim_over_module
+    if iso and rim is not None and rim <= THIN_RING:
         rule = f"is {THIN_RING:g} or less, for which ISO 6336 has no Y_B of rings"
         raise refuse(rule, 3.5, ("stage", k, "ring", "rim_over_module"))
     most = own.ring_teeth or scene.limits.wheel_teeth
@@ -189,6 +201,17 @@ def _check_gears(scene: "Scene", own: StageTable, k: int) -> None:
     if sized and own.type == PLANETARY and gear_of(own.ring).profile_shift is not None:
         rule = "follows from the distance of sun and planet"
         raise refuse(rule, at=("stage", k, "ring", "profile_shift"), action="remove")
+
+
+def _check_given(scene: "Scene", own: StageTable, k: int) -> None:
+    """Refuse factors of AGMA that are those of one mesh, of stages that have two."""
+    assert scene.rating
+    tables = (("stage", k, "given"), own.given), (("rating", "given"), scene.rating.given)
+    for place, table in tables if own.type == PLANETARY else ():
+        for symbol in OF_MESH:
+            if getattr(table, symbol) is not None:
+                rule = "is of one mesh: sun and planet, and planet and ring have their own"
+                raise refuse(rule, at=(*place, symbol), action="remove")
 
 
 def _check_teeth(scene: "Scene", own: StageTable, k: int) -> None:
@@ -289,7 +312,7 @@ def ways(scene: "Scene", own: StageTable) -> Iterator[Planets]:
             own.equally_spaced is not False,
             own.mesh_order or "any",
             Planets.clearance if own.planet_clearance is None else float(own.planet_clearance),
-            **({"widest": diameter.value} if diameter else {}),
+            diameter.value if diameter else math.inf,
         )
 
 
@@ -340,8 +363,16 @@ def planet_assumptions(scene: "Scene") -> Iterator[str]:
             yield "The face width of a stage whose sun is held is limited over its ring's diameter."
         yield (
             "Meshes of planets are rated against the carrier, with the torque over their number "
-            "times K_γ. K_Hβ takes sun and planets for pinions on shafts of their own, without "
-            "pins and carrier: where the alignment is known, give K_Hbeta for both meshes."
+            "times K_γ. K_Hβ (K_m by AGMA) takes sun and planets for pinions on shafts of their "
+            "own, without pins and carrier: where the alignment is known, give K_Hbeta (K_m) for "
+            "both meshes."
+        )
+    if scene.rating and scene.rating.standard != "iso6336":
+        yield (
+            "AGMA 2001 and 908 are of external gears: I and J of rings are those of signed radii "
+            "and of a tooth with the ring's fillet, K_B is the law of external rims (unverified). "
+            "AGMA has no mesh load factor: K_γ multiplies K_o. Its pinion is the gear with fewer "
+            "teeth, be it the planet."
         )
 
 
@@ -388,7 +419,8 @@ def options(scene: "Scene", own: StageTable) -> tuple[Option, ...]:
         for table in ((own.pinion, own.wheel) if own.type == INTERNAL else ())
     ]
     made = []
-    for planets in ways(scene, own):
+    agma = asked.standard != "iso6336"
+    for planets in _by_fewest(scene, own) if agma else ways(scene, own):
         tables = meshes(own, planets.count)
         if planets.count:
             outer, second = tables
@@ -400,21 +432,41 @@ def options(scene: "Scene", own: StageTable) -> tuple[Option, ...]:
                 option(asked, table, pair, hours, levels)
                 for table, pair in zip(tables, pairs, strict=True)
             ]
-            made.append(_combined(own, planets, each))
+            if planets.fewest == PLANET:  # AGMA, the first standard, takes it as the pinion
+                turned = option(asked, tables[0], pairs[0][::-1], hours, levels)
+                standards = turned.standards[0], *each[0].standards[1:]
+                each[0] = replace(each[0], standards=standards)
+            made.append(_combined(own, planets, each, agma))
     return tuple(made)
 
 
-def _combined(own: StageTable, planets: Planets, each: Sequence[Option]) -> Option:
-    """One way of making a stage of those of its meshes."""
+def _by_fewest(scene: "Scene", own: StageTable) -> Iterator[Planets]:
+    """Ways of making a stage, with the sun as the pinion of its mesh by AGMA and with planets."""
+    for planets in ways(scene, own):
+        if not planets.count:
+            yield planets
+            continue
+        sun, planet, ring = planets.sun[0], planets.planet[1], planets.ring[1]
+        of_sun = sun <= min(planet, 0.5 * (ring - sun - planets.fewer))
+        members = (SUN, PLANET) if not scene.given else (PLANET, SUN)[of_sun:][:1]
+        for member in members:
+            yield replace(planets, fewest=member)
+
+
+def _combined(own: StageTable, planets: Planets, each: Sequence[Option], agma: bool) -> Option:
+    """One way of making a stage of those of its meshes; agma: AGMA is the first standard."""
     standards: list[Any] = []
     for k, one in enumerate(each):
         with_ring = k == len(each) - 1
         words = "" if len(each) == 1 else "_of_ring" if with_ring else "_of_sun"
-        for standard in one.standards:
-            at: Any = standard
-            practice = replace(at.practice, meshes=at_once(own, planets.count, with_ring))
-            rated = replace(at, practice=practice)
-            standards.append(InPlanetaryMesh(rated, planets, with_ring, words + at.suffix))
+        for n, standard in enumerate(one.standards):
+            rated: Any = standard
+            turned = agma and n == 0 and not with_ring and planets.fewest == PLANET
+            if n or not agma:
+                at = replace(rated.practice, meshes=at_once(own, planets.count, with_ring))
+                rated = replace(rated, practice=at)
+            made = InPlanetaryMesh(rated, planets, with_ring, words + rated.suffix, turned=turned)
+            standards.append(made)
     first, last = each[0], each[-1]
 
     def three(name: str) -> Any:

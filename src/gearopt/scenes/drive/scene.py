@@ -70,7 +70,7 @@ from gearopt.scenes.drive.toothings import (
     inclination,
     toothings,
 )
-from gearopt.scenes.drive.without_planets import check_standard, no_limits
+from gearopt.scenes.drive.without_planets import no_limits
 from gearopt.scenes.explaining.numbers import around, in_reverse
 from gearopt.scenes.parts import Duty
 from gearopt.scenes.reading.choices import Between, Choice, Preferred, values_of
@@ -141,13 +141,6 @@ class Scene(Table):
     def _idlers(cls, stages: tuple[StageTable, ...]) -> tuple[StageTable, ...]:
         """Stages whose idlers have the keys of the wheels that they are."""
         return with_gears_named(with_idlers(stages))
-
-    @field_validator("rating", mode="before")
-    @classmethod
-    def _of_rings(cls, value: Any, info: ValidationInfo) -> Any:
-        """Refuse a standard that has no rings before what it asks for."""
-        check_standard(value, info.data.get("stage", ()))
-        return value
 
     @field_validator("limits", mode="wrap")
     @classmethod

@@ -1,6 +1,6 @@
 """What of a file does not go together with planets or a ring, by its key."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from pydantic_core import PydanticCustomError
@@ -17,17 +17,7 @@ if TYPE_CHECKING:
     from gearopt.scenes.drive.scene import Scene
 
 AIMS = ("gear_volume", "mass", "mesh_loss")
-NO_J = "AGMA 908 has no J of rings"
 NO_RATING = 'Write a table [rating] with standard = "iso6336"; gearopt new planetary shows how'
-
-
-def check_standard(rating: Any, stages: Sequence[StageTable]) -> None:
-    """Refuse a table [rating], as it is written, by a standard that has no rings."""
-    own = next((own for own in stages if own.epicyclic), None)
-    asked = rating.get("standard") if isinstance(rating, dict) else "iso6336"
-    if own is not None and asked in (None, "agma", "both"):
-        rule = f'is {"missing" if asked is None else "not"} for type = "{own.type}": {NO_J}'
-        raise refuse(rule, "iso6336", ("standard",))
 
 
 def against(scene: "Scene", own: StageTable, k: int) -> Iterator[PydanticCustomError]:

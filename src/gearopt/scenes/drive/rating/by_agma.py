@@ -9,16 +9,18 @@ from gearopt.formulations.strength.agma import Agma
 from gearopt.physics.agma.allowables import CURVES, IRONS
 from gearopt.physics.agma.factors import ACCURACIES, quality_of_accuracy
 from gearopt.physics.agma.rating import rate, rate_spectrum
-from gearopt.physics.agma.rating_factors import Practice, Steel
+from gearopt.physics.agma.rating_factors import SHARING, Practice, Steel
 from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.rating.gears import Tables, blanks
 from gearopt.scenes.drive.tables.drive import StageTable
+from gearopt.scenes.drive.tables.planetary import PLANETARY
 from gearopt.scenes.drive.tables.rating import GearTable, RatingTable
 
 __all__ = ["rate", "rate_spectrum"]
 NAME = "AGMA"  # in short
 NAMES = {  # of the factors, as AGMA 2001 has them
     "K_o": "overload factor",
+    SHARING: "mesh load factor, multiplies K_o",
     "K_v": "dynamic factor",
     "K_m": "load distribution factor",
     "K_R": "reliability factor",
@@ -42,6 +44,7 @@ TITLES = {  # by edition
 }
 LIMIT = Agma  # the rating as a limit of a stage
 PROPORTIONAL = True  # stresses, or their squares, grow with the load
+FEWER_FIRST = True  # the pinion has fewer teeth than the wheel
 STATIC = False  # whether it rates a peak torque against static strength
 UNVERIFIED_SPECTRUM = ()  # of a load spectrum: what no second source has
 
@@ -134,5 +137,9 @@ def _quality(asked: RatingTable) -> float:
 
 
 def given(rating: RatingTable, own: StageTable) -> dict[str, Any]:
-    """Factors that a file gives for a stage, else for all stages."""
-    return rating.given.factors() | own.given.factors()
+    """Factors that a file gives for a stage, else for all stages; K_gamma of planets."""
+    factors = rating.given.factors() | own.given.factors()
+    sharing = own.given_iso6336.factors().get(SHARING) if own.type == PLANETARY else None
+    if sharing is not None or own.as_mesh is not None:
+        factors[SHARING] = sharing or 1.0
+    return factors

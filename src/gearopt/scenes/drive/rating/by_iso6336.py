@@ -22,6 +22,7 @@ SUFFIXES = {"MPa": "MPa", "mm": "mm", "sqrt(MPa)": "sqrt_MPa"}
 UNITS = {symbol: SUFFIXES[unit] for symbol, (_, unit) in CLAUSES.items() if unit}
 LIMIT = Iso6336  # the rating as a limit of a stage
 PROPORTIONAL = False  # stresses, or their squares, grow with the load
+FEWER_FIRST = False  # of a sun and planets the sun is the pinion, whose twist counts
 STATIC = True  # whether it rates a peak torque against static strength
 UNVERIFIED_SPECTRUM = ("load spectrum by part 6",)  # what no second source has
 

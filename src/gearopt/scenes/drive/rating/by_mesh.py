@@ -11,7 +11,7 @@ from gearopt.formulations.drive.design import (
     with_planets,
 )
 from gearopt.formulations.drive.planetary import Planets
-from gearopt.formulations.drive.rating import MeshName, MeshRating, RatingFactor
+from gearopt.formulations.drive.rating import GIVEN, MeshName, MeshRating, RatingFactor
 from gearopt.formulations.drive.train import STEEL_DENSITY
 from gearopt.formulations.strength.standard import Option
 from gearopt.frozen import dataclass
@@ -20,8 +20,10 @@ from gearopt.physics.geometry.flaws import Flaw
 from gearopt.physics.loads import torque_ratios
 from gearopt.scenes.drive.driving import drivers
 from gearopt.scenes.drive.face_widths import fixed_width
+from gearopt.scenes.drive.idlers import copied
 from gearopt.scenes.drive.planetary import at_once, cuttings, meshes, options, ways
 from gearopt.scenes.drive.rating.gears import given_pairs
+from gearopt.scenes.drive.rating.mesh import Materials
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.drive import StageTable
 from gearopt.scenes.drive.tables.planetary import INTERNAL, PLANETARY
@@ -121,6 +123,21 @@ def _meshes_of(
     return rated, planets.meshes(pair)
 
 
+def with_fewer_first(scene: Scene, pairs: tuple[GearPair, ...], names: Materials) -> Meshes:
+    """Meshes of a drive in which a sun with more teeth than a planet is the wheel, as by AGMA."""
+    tables, both, made = list(scene.stage_tables), list(pairs), list(names)
+    for k, (own, pair) in enumerate(zip(scene.stage_tables, pairs, strict=True)):
+        mesh = own.as_mesh
+        if mesh is None or own.type != PLANETARY or not 0.0 < pair.ratio < 1.0:
+            continue
+        name = replace(mesh.name, pinion=mesh.name.wheel, wheel=mesh.name.pinion)
+        turned = replace(mesh, name=name, slower=mesh.slower * float(pair.ratio))
+        swapped = copied(own, {"pinion": own.wheel, "wheel": own.pinion})
+        tables[k], made[k] = swapped.rated_as(turned), names[k][::-1]
+        both[k] = replace(pair, pinion=pair.wheel, wheel=pair.pinion)
+    return scene.model_copy(update={"stage": tuple(tables)}), tuple(both), made
+
+
 def planets_of(scene: Scene, own: StageTable, stage: StageDesign) -> Planets:
     """The planets, or the ring, of a stage of a design."""
     internal = own.type == INTERNAL
@@ -170,7 +187,11 @@ def shared(scene: Scene, row: RatingFactor) -> RatingFactor:
     """A factor of a mesh in the place of a stage; K_gamma that no file gives is marked."""
     own = scene.stage_tables[row.stage - 1]
     by_rule = own.type == PLANETARY and own.mesh_load_factor is None
-    if row.symbol != "K_gamma" or not by_rule:
+    if row.symbol != "K_gamma":
+        return row
+    if row.source == GIVEN and "K_gamma" not in own.given_iso6336.factors():
+        return replace(row, source="one mesh")
+    if not by_rule:
         return row
     return replace(row, source=BY_PLANETS, verified=False)
 

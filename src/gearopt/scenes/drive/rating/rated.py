@@ -26,6 +26,7 @@ from gearopt.scenes.drive.rating.by_mesh import (
     governing,
     mesh_names,
     shared,
+    with_fewer_first,
 )
 from gearopt.scenes.drive.rating.by_mesh import given_design as given_planets
 from gearopt.scenes.drive.rating.checks import not_given
@@ -334,6 +335,8 @@ def _by(
     """Return the rating of all stages; SolveError names the stage that has none, and why."""
     asked = scene.rating
     assert asked
+    if standard.FEWER_FIRST and any(own.as_mesh for own in scene.stage_tables):
+        scene, pairs, materials = with_fewer_first(scene, pairs, materials)
     meshes = rated_meshes(scene, pairs, standard, materials)
     still = required_static(asked)
     wanted = [(*required(of_stage(asked, own)), *still) for own in scene.stage_tables]

@@ -32,6 +32,7 @@ IN_PLANETS = (  # keys of a gear that sun, planets and ring have, too
     *("tool_addendum", "tool_tip_radius", "tool_protuberance", "grinding_allowance", "steel"),
     *("treatment", "hardness", "elastic_modulus", "poisson_ratio", "roughness", "materials"),
     *("profile_shift", "tip_alteration", "thickness_allowance"),
+    *("grade", "surface_hardness", "quality", "s_ac", "s_at"),
 )
 
 
@@ -99,7 +100,7 @@ class PlanetaryKeys(Table):
     type: Annotated[Any, one_or_several(TYPE)] = Field(  # a word, or a tuple of them
         PARALLEL,
         description="parallel: a pair of external gears; planetary: sun, planets and ring; "
-        "internal: a pinion in a ring. Sized by ISO 6336 in whole teeth, or all given and rated. "
+        "internal: a pinion in a ring. Sized by ratings in whole teeth, or all given and rated. "
         "A list, of gears that are sized: the best of these types is found",
     )
     fixed: Annotated[str | None, choice(*HELD)] = Field(
