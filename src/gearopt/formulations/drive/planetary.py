@@ -522,9 +522,13 @@ class InPlanetaryMesh:
         return np.where(fits, torque, np.nan)[()], speed
 
     def safeties(self, pair: GearPair, torque: Any, speed: Any) -> Any:
-        """Return S_F1, S_F2, S_H1, S_H2; NaN where the gears do not fit or are refused."""
+        """Return S_F1, S_F2, S_H1, S_H2; NaN where the gears do not fit or are refused.
+
+        Those of the sun come first, turned or not.
+        """
         slower, relative = self._loads(pair, self.planets.room(pair))
-        return self.standard.safeties(self.mesh(pair), torque * slower, speed * relative)
+        each = self.standard.safeties(self.mesh(pair), torque * slower, speed * relative)
+        return (each[1], each[0], each[3], each[2]) if self.turned else each
 
     def best_with(self, rivals: Any) -> None:
         """No virtual way: other planets differ in more than strength."""

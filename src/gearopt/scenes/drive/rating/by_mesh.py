@@ -15,7 +15,7 @@ from gearopt.formulations.drive.rating import GIVEN, MeshName, MeshRating, Ratin
 from gearopt.formulations.drive.train import STEEL_DENSITY
 from gearopt.formulations.strength.standard import Option
 from gearopt.frozen import dataclass
-from gearopt.physics.gears import GearPair
+from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.geometry.flaws import Flaw
 from gearopt.physics.loads import torque_ratios
 from gearopt.scenes.drive.driving import drivers
@@ -136,6 +136,13 @@ def with_fewer_first(scene: Scene, pairs: tuple[GearPair, ...], names: Materials
         tables[k], made[k] = swapped.rated_as(turned), names[k][::-1]
         both[k] = replace(pair, pinion=pair.wheel, wheel=pair.pinion)
     return scene.model_copy(update={"stage": tuple(tables)}), tuple(both), made
+
+
+def limited(mesh: MeshName | None, member: str) -> str:
+    """What limits of a mesh call a member: of sun and planet the sun is the pinion, always."""
+    if mesh is None or mesh.wheel != CALLED[False][1]:
+        return member
+    return MEMBERS[1 - MEMBERS.index(member)]
 
 
 def planets_of(scene: Scene, own: StageTable, stage: StageDesign) -> Planets:

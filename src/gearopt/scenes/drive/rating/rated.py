@@ -25,6 +25,7 @@ from gearopt.scenes.drive.rating.by_mesh import (
     by_mesh,
     governing,
     mesh_names,
+    limited,
     shared,
     with_fewer_first,
 )
@@ -277,9 +278,10 @@ def utilisations(rated: DriveRating) -> dict[str, float]:
     for by_standard, of_second in zip(rated.each, ("", SECOND), strict=False):
         for gear, mode, reached, asked in by_standard.margins:
             static, end = mode.startswith("static "), mode.split(" ")[-1]
-            of_mesh = by_standard.named[gear.stage - 1].suffix if by_standard.named else ""
-            place = by_standard.stage_of(gear.stage)
-            name = f"{gear.member}_{end}{of_mesh}{STATIC if static else of_second}[{place}]"
+            mesh = by_standard.named[gear.stage - 1] if by_standard.named else None
+            place, of_mesh = by_standard.stage_of(gear.stage), mesh.suffix if mesh else ""
+            member = limited(mesh, gear.member)
+            name = f"{member}_{end}{of_mesh}{STATIC if static else of_second}[{place}]"
             limits[name] = asked / reached
     return limits
 

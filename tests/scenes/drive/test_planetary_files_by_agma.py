@@ -122,3 +122,15 @@ def test_sized_stages_are_safe_by_what_they_were_sized_by(both):
 def test_factors_of_one_mesh_are_not_given_to_two(symbol, place):
     with pytest.raises(SceneError, match=f"given.{symbol}.*is of one mesh"):
         gearopt.rate(WIND, BY_AGMA | {f"{place}.{symbol}": 0.2})
+
+
+def test_limits_of_a_larger_sun_are_those_of_its_rating():
+    """18 teeth of the planet, 40 of the sun: used is what S_F and S_H say, gear by gear."""
+    changes = SIZED | {"stage[1].sun_teeth": 40, "duty.output_speed": None, "duty.ratio": 3.0}
+    changes |= {"stage[1].ring_teeth": [74, 86], "stage[1].planets": 3, "duty.ratio_tolerance": 0.1}
+    found = gearopt.solve(STAGE, changes)
+    rating = found.design["rating"]
+    assert rating["named"][0]["wheel"] == "sun"
+    for gear, member in zip(rating["gears"][:2], ("wheel", "pinion"), strict=True):
+        asked = rating["minimum_bending_safety"] / gear["bending_safety"]
+        assert found.limits[f"{member}_bending_of_sun[1]"] == pytest.approx(asked, rel=1e-9)
