@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 from gearopt.formulations.drive.design import (
     DriveDesign,
@@ -18,12 +19,13 @@ from gearopt.frozen import dataclass
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.geometry.flaws import Flaw
 from gearopt.physics.loads import torque_ratios
+from gearopt.physics.rating import Rating
 from gearopt.scenes.drive.driving import drivers
 from gearopt.scenes.drive.face_widths import fixed_width
 from gearopt.scenes.drive.idlers import copied
 from gearopt.scenes.drive.planetary import at_once, cuttings, meshes, options, ways
 from gearopt.scenes.drive.rating.gears import given_pairs
-from gearopt.scenes.drive.rating.mesh import Materials
+from gearopt.scenes.drive.rating.mesh import Materials, Mesh, rated_meshes
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.drive import StageTable
 from gearopt.scenes.drive.tables.planetary import INTERNAL, PLANETARY
@@ -123,6 +125,18 @@ def _meshes_of(
     return rated, planets.meshes(pair)
 
 
+def meshes_by(
+    scene: Scene, pairs: tuple[GearPair, ...], standard: Any, names: Materials
+) -> list[Mesh]:
+    """`rated_meshes`; AGMA rates a sun with more teeth than a planet as the wheel."""
+    if not standard.FEWER_FIRST or not any(own.as_mesh for own in scene.stage_tables):
+        return rated_meshes(scene, pairs, standard, names)
+    turned, both, made = with_fewer_first(scene, pairs, names)
+    rated = rated_meshes(turned, both, standard, made)
+    rows = zip(rated, pairs, scene.stage_tables, strict=True)
+    return [sun_first(mesh, pair, own.as_mesh) for mesh, pair, own in rows]
+
+
 def with_fewer_first(scene: Scene, pairs: tuple[GearPair, ...], names: Materials) -> Meshes:
     """Meshes of a drive in which a sun with more teeth than a planet is the wheel, as by AGMA."""
     tables, both, made = list(scene.stage_tables), list(pairs), list(names)
@@ -130,19 +144,46 @@ def with_fewer_first(scene: Scene, pairs: tuple[GearPair, ...], names: Materials
         mesh = own.as_mesh
         if mesh is None or own.type != PLANETARY or not 0.0 < pair.ratio < 1.0:
             continue
-        name = replace(mesh.name, pinion=mesh.name.wheel, wheel=mesh.name.pinion)
-        turned = replace(mesh, name=name, slower=mesh.slower * float(pair.ratio))
+        turned = replace(mesh, slower=mesh.slower * float(pair.ratio))
         swapped = copied(own, {"pinion": own.wheel, "wheel": own.pinion})
         tables[k], made[k] = swapped.rated_as(turned), names[k][::-1]
         both[k] = replace(pair, pinion=pair.wheel, wheel=pair.pinion)
     return scene.model_copy(update={"stage": tuple(tables)}), tuple(both), made
 
 
-def limited(mesh: MeshName | None, member: str) -> str:
-    """What limits of a mesh call a member: of sun and planet the sun is the pinion, always."""
-    if mesh is None or mesh.wheel != CALLED[False][1]:
-        return member
-    return MEMBERS[1 - MEMBERS.index(member)]
+def sun_first(mesh: Mesh, pair: GearPair, own: AsMesh | None) -> Mesh:
+    """A rated mesh with its gears in the order of a pair, which it was rated in or turned."""
+    if mesh.pair.pinion.teeth == pair.pinion.teeth:
+        return mesh
+    u, damages = float(mesh.pair.ratio), mesh.damages
+    operations = tuple(
+        replace(level, pinion_speed=level.pinion_speed / u, contacts=level.contacts[::-1])
+        for level in mesh.operations
+    )
+    return replace(
+        mesh,
+        pair=pair,
+        tables=mesh.tables[::-1],
+        operations=operations,
+        levels=tuple(map(_swapped, mesh.levels)),
+        bending_safety=mesh.bending_safety[::-1],
+        contact_safety=mesh.contact_safety[::-1],
+        damages=None if damages is None else (damages[0][::-1], damages[1][::-1]),
+        grown=lambda factor: sun_first(mesh.grown(factor), pair, own),
+        own=own,
+    )
+
+
+def _swapped(rating: Rating) -> Rating:
+    """A rating with pinion and wheel swapped."""
+    changed: dict[str, Any] = {k: v[::-1] for k, v in vars(rating).items() if isinstance(v, tuple)}
+    member, mode = rating.governs
+    changed["governs"] = MEMBERS[1 - MEMBERS.index(member)], mode
+    changed["factors"] = {
+        symbol: replace(f, value=f.value[::-1]) if isinstance(f.value, tuple) else f
+        for symbol, f in rating.factors.items()
+    }
+    return replace(rating, **changed)
 
 
 def planets_of(scene: Scene, own: StageTable, stage: StageDesign) -> Planets:

@@ -25,9 +25,8 @@ from gearopt.scenes.drive.rating.by_mesh import (
     by_mesh,
     governing,
     mesh_names,
-    limited,
+    meshes_by,
     shared,
-    with_fewer_first,
 )
 from gearopt.scenes.drive.rating.by_mesh import given_design as given_planets
 from gearopt.scenes.drive.rating.checks import not_given
@@ -39,7 +38,7 @@ from gearopt.scenes.drive.rating.gears import (
     required_hours,
 )
 from gearopt.scenes.drive.rating.geometry import tooth_geometry
-from gearopt.scenes.drive.rating.mesh import Materials, Mesh, rated_meshes
+from gearopt.scenes.drive.rating.mesh import Materials, Mesh
 from gearopt.scenes.drive.rating.options import (
     SECOND,
     STANDARDS,
@@ -278,10 +277,9 @@ def utilisations(rated: DriveRating) -> dict[str, float]:
     for by_standard, of_second in zip(rated.each, ("", SECOND), strict=False):
         for gear, mode, reached, asked in by_standard.margins:
             static, end = mode.startswith("static "), mode.split(" ")[-1]
-            mesh = by_standard.named[gear.stage - 1] if by_standard.named else None
-            place, of_mesh = by_standard.stage_of(gear.stage), mesh.suffix if mesh else ""
-            member = limited(mesh, gear.member)
-            name = f"{member}_{end}{of_mesh}{STATIC if static else of_second}[{place}]"
+            of_mesh = by_standard.named[gear.stage - 1].suffix if by_standard.named else ""
+            place = by_standard.stage_of(gear.stage)
+            name = f"{gear.member}_{end}{of_mesh}{STATIC if static else of_second}[{place}]"
             limits[name] = asked / reached
     return limits
 
@@ -337,9 +335,7 @@ def _by(
     """Return the rating of all stages; SolveError names the stage that has none, and why."""
     asked = scene.rating
     assert asked
-    if standard.FEWER_FIRST and any(own.as_mesh for own in scene.stage_tables):
-        scene, pairs, materials = with_fewer_first(scene, pairs, materials)
-    meshes = rated_meshes(scene, pairs, standard, materials)
+    meshes = meshes_by(scene, pairs, standard, materials)
     still = required_static(asked)
     wanted = [(*required(of_stage(asked, own)), *still) for own in scene.stage_tables]
     rows = tuple(mesh_row(asked, mesh, w) for mesh, w in zip(meshes, wanted, strict=True))
