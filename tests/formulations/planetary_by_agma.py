@@ -38,7 +38,8 @@ def _ways(option, both, size):
         return replace(made, operation=replace(made.operation, contacts=contacts))
 
     for fewest in (SUN, PLANET) if count else (None,):
-        planets = replace(option.planets, fewest=fewest)
+        made = {} if both else {"thinnest": 0.0}  # every rim has a K_B
+        planets = replace(option.planets, fewest=fewest, **made)
         inner = standard((BENT if count else HARD, HARD), (1.0, float(max(count, 1))))
         rated = [InPlanetaryMesh(inner, planets, True, "_of_ring")]
         if count:

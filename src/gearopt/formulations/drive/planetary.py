@@ -68,11 +68,6 @@ class Cutting:
         """Whether bodies of all modules have one shape."""
         return self.outside is None and all(blank.solid for blank in self.blanks)
 
-    @property
-    def may_be_thin(self) -> bool:
-        """Whether the rim of a ring may be too thin for a Y_B."""
-        return self.outside is not None or self.rim <= THIN_RING
-
     @np.errstate(invalid="ignore", divide="ignore")
     def gears(self, module: Any, teeth: Three, width: Any) -> tuple[Gear, Gear, Gear, Any]:
         """Sun, planet and ring of numbers of teeth above 0, and their distance [mm].
@@ -219,7 +214,8 @@ class Planets:
     count N of planets, 0: a pinion in a ring; held: of HELD; fewer: twice the teeth that a planet
     has less. sun, planet, ring: ranges of teeth. spaced: equally; order: of ORDERS; clearance of
     the tips of neighbours [normal modules]. widest: outside diameter [mm] of the ring. fewest: SUN
-    or PLANET, whichever has fewer teeth (a sun of as many, too), None: either.
+    or PLANET, whichever has fewer teeth (a sun of as many, too), None: either. thinnest: s_R/m_n
+    of rings up to which a standard rates none.
     """
 
     cutting: Cutting
@@ -234,6 +230,12 @@ class Planets:
     clearance: float = 0.5
     widest: float = math.inf
     fewest: int | None = None
+    thinnest: float = THIN_RING
+
+    @property
+    def may_be_thin(self) -> bool:
+        """Whether the rim of a ring may be too thin to be rated."""
+        return self.cutting.outside is not None or self.cutting.rim <= self.thinnest
 
     def teeth(self, pair: GearPair) -> Three:
         """Numbers of teeth of sun (or pinion), planet and ring of pairs, above 0."""
@@ -448,12 +450,11 @@ def no_room(ways: Sequence[Planets], pairs: GearPair) -> str:
     )
     if least > first.widest:
         return f"The smallest ring is {least:.5g} mm wide, {first.widest:.5g} mm are allowed"
-    if first.cutting.may_be_thin and not any(
-        (ring_rim(way.gears(pairs)[RING])[fits] > THIN_RING).any() for way, fits in left
+    if first.may_be_thin and not any(
+        (ring_rim(way.gears(pairs)[RING])[fits] > way.thinnest).any() for way, fits in left
     ):
-        what = (
-            f"has a rim of {THIN_RING:g} m_n or less below its roots, which has no Y_B in ISO 6336"
-        )
+        law = ", which has no Y_B in ISO 6336" if first.thinnest else ""
+        what = f"has a rim of {first.thinnest:g} m_n or less below its roots{law}"
         return f"Every ring, of the least module too, {what}: make its outside larger"
     return ""
 
@@ -517,8 +518,8 @@ class InPlanetaryMesh:
         ring = self.planets.gears(pair)[RING]
         if math.isfinite(self.planets.widest):
             fits = fits & (-ring.outside <= self.planets.widest)
-        if self.planets.cutting.may_be_thin and "Y_B" not in self.standard.given:
-            fits = fits & (ring_rim(ring) > THIN_RING)
+        if self.planets.may_be_thin:
+            fits = fits & (ring_rim(ring) > self.planets.thinnest)
         return np.where(fits, torque, np.nan)[()], speed
 
     def safeties(self, pair: GearPair, torque: Any, speed: Any) -> Any:

@@ -133,6 +133,11 @@ class Agma:
         return agma_floor(self, box, choice)
 
     @property
+    def thinnest_ring(self) -> float:
+        """s_R/m_n up to which no ring is rated: K_B takes every rim."""
+        return 0.0
+
+    @property
     def steps(self) -> dict[str, tuple[float, ...]]:
         """Sizes [mm] at which a rating jumps, by name of `Cells`: none."""
         return {}

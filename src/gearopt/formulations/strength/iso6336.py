@@ -67,6 +67,11 @@ class Iso6336:
         return Case(pair, operation, self.materials, self._practice(pair), self.given)
 
     @property
+    def thinnest_ring(self) -> float:
+        """s_R/m_n up to which no ring is rated: it has no Y_B."""
+        return 0.0 if "Y_B" in self.given else bending.THIN_RING
+
+    @property
     def steps(self) -> dict[str, tuple[float, ...]]:
         """Return the sizes [mm] at which deviations jump, by name of `Cells`."""
         if self.practice.tolerances != "1995":

@@ -456,6 +456,8 @@ def _by_fewest(scene: "Scene", own: StageTable) -> Iterator[Planets]:
 def _combined(own: StageTable, planets: Planets, each: Sequence[Option], agma: bool) -> Option:
     """One way of making a stage of those of its meshes; agma: AGMA is the first standard."""
     standards: list[Any] = []
+    rated_rings: list[Any] = [*each[-1].standards]
+    planets = replace(planets, thinnest=max(one.thinnest_ring for one in rated_rings))
     for k, one in enumerate(each):
         with_ring = k == len(each) - 1
         words = "" if len(each) == 1 else "_of_ring" if with_ring else "_of_sun"
