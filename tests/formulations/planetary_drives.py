@@ -51,6 +51,16 @@ def _standard(steels, contacts, meshes, factor):
     return replace(made, operation=replace(made.operation, contacts=contacts))
 
 
+def with_carrier(train, widths):
+    """The drive whose first stage has a carrier; widths: of its cheeks, by number of planets."""
+    first, options = train.stages[0], []
+    for option in first.options:
+        planets = replace(option.planets, carrier=widths[option.planets.count])
+        rated = tuple(replace(standard, planets=planets) for standard in option.standards)
+        options.append(replace(option, standards=rated, planets=planets))
+    return replace(train, stages=(replace(first, options=tuple(options)), *train.stages[1:]))
+
+
 def rings(cutting, **limits):
     """The option of a pinion in a ring."""
     planets = Planets(cutting, 0, **limits)
@@ -262,7 +272,7 @@ def body(gear, width, outside=None):
 
 def volume(way, made, width, module, mass=False):
     """Volume of all gears of a stage [mm3]."""
-    sun, planet, ring, _ = made
+    sun, planet, ring, a = made
     outside = way.cutting.outside or abs(ring.root_diameter) + 7.0 * module
     if not way.count:
         return body(sun, width) + body(ring, width, outside)
@@ -270,7 +280,8 @@ def volume(way, made, width, module, mass=False):
         body(gear, width) - (taken(blank, gear, width) if mass else 0.0)
         for blank, gear in zip(way.cutting.blanks, (sun, planet), strict=True)
     )
-    return first + way.count * second + body(ring, width, outside)
+    cheeks = math.pi * width * way.carrier * (a + 0.35 * planet.reference_diameter) ** 2
+    return first + way.count * second + body(ring, width, outside) + cheeks
 
 
 def taken(blank, gear, width):

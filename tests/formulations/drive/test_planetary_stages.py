@@ -62,6 +62,13 @@ def test_pinions_in_rings_are_those_of_every_candidate(seed):
     agree(own.some_internal_drive(seed))
 
 
+@pytest.mark.parametrize("seed", few(range(20), (5,)))
+def test_carriers_are_those_of_every_candidate(seed):
+    """Cheeks are heavier than the gears are, and the heavier the fewer planets there are."""
+    train = own.some_planetary_drive(seed, 1 + seed % 5 // 4)
+    agree(own.with_carrier(train, {3: 2.0, 4: 1.0, 5: 0.3}))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(10))
 def test_a_given_ratio_is_raised_by_the_mirrored_drive(seed):

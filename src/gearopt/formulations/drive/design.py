@@ -105,6 +105,9 @@ class StageDesign:
     ring_contact_ratio: Annotated[float | None, Shown("contact ratio with the ring ε_α")] = None
     ring_mass_kg: Annotated[float | None, Shown("mass of the ring")] = None
     ring_material: Annotated[str, Shown("material of the ring")] = ""
+    carrier_diameter_mm: Annotated[float | None, Shown("diameter of the carrier's cheeks")] = None
+    carrier_width_mm: Annotated[float | None, Shown("width of both cheeks")] = None
+    carrier_mass_kg: Annotated[float | None, Shown("mass of the carrier")] = None
     pinion_addendum: float = ISO_53_A.addendum
     wheel_addendum: float = ISO_53_A.addendum
     pinion_tool_addendum: float = ISO_53_A.dedendum
@@ -277,7 +280,9 @@ def of_planets(
     factors = getattr(option.standards[0], "standard", None)
     sharing = None if factors is None else factors.given.get("K_gamma")
     gears: dict[str, Any] = {"sun_teeth": z_s, "planet_teeth": z_p, "planets": planets.count}
-    gears |= {"fixed": planets.held, "wheel_mass_kg": masses[1] / max(planets.count, 1)}
+    carrier = _carrier(planets, pair, densities[1])
+    each = (masses[1] - carrier.get("carrier_mass_kg", 0.0)) / max(planets.count, 1)
+    gears |= {"fixed": planets.held, "wheel_mass_kg": each} | carrier
     gears |= {"mesh_load_factor": sharing, "wheel_material": option.materials[1]}
     if not planets.count:
         names = ("teeth", "diameter_mm", "tip_diameter_mm", "root_diameter_mm")
@@ -307,6 +312,15 @@ def of_planets(
         **_tool("ring", ring),
         **gears,
     )
+
+
+def _carrier(planets: Any, pair: GearPair, density: float) -> dict[str, Any]:
+    """The carrier of a stage of `of_planets` by its keys; nothing where it does not count."""
+    if not planets.carrier:
+        return {}
+    across, width, volume = map(float, planets.cheeks(pair))
+    sizes = {"carrier_diameter_mm": across, "carrier_width_mm": width}
+    return sizes | {"carrier_mass_kg": 1000.0 * density * volume}
 
 
 def with_planets(design: DriveDesign, stages: tuple[StageDesign, ...]) -> DriveDesign:

@@ -28,6 +28,7 @@ ORDERS = ("any", "simultaneous", "sequential", "hunting")
 SUN, PLANET, RING = 0, 1, 2
 ACCEPTED = ("radial_assembly", "cutter_infeed")  # gears are put together, and cut, axially
 LARGE = 1e6  # teeth: no limit
+CHEEK = 0.35  # reference diameters of a planet, by which cheeks of a carrier exceed its circle
 NO_UNDERCUT = 1e-4  # normal modules, by which shifts exceed that of the edge of an undercut
 LEAST_PLANET = 5  # teeth
 ROUNDING = 1e-9  # of margins [normal modules]
@@ -215,7 +216,8 @@ class Planets:
     has less. sun, planet, ring: ranges of teeth. spaced: equally; order: of ORDERS; clearance of
     the tips of neighbours [normal modules]. widest: outside diameter [mm] of the ring. fewest: SUN
     or PLANET, whichever has fewer teeth (a sun of as many, too), None: either. thinnest: s_R/m_n
-    of rings up to which a standard rates none.
+    of rings up to which a standard rates none. carrier: face widths of both its cheeks together, 0:
+    it does not count.
     """
 
     cutting: Cutting
@@ -231,6 +233,7 @@ class Planets:
     widest: float = math.inf
     fewest: int | None = None
     thinnest: float = THIN_RING
+    carrier: float = 0.0
 
     @property
     def may_be_thin(self) -> bool:
@@ -350,7 +353,7 @@ class Planets:
         return 2.0 * math.pi * np.floor((sun + ring) / self.count) / (sun + ring)
 
     def volumes(self, pair: GearPair, solid: bool = False) -> tuple[Any, ...]:
-        """Volumes [mm3] of sun, all planets and ring; infinite of pairs that are not possible.
+        """Volumes [mm3] of sun, all planets with their carrier, and ring; infinite if impossible.
 
         solid: without bores.
         """
@@ -361,8 +364,17 @@ class Planets:
             shapes = (SOLID, SOLID) if solid else self.cutting.blanks
             each = [shape.volume(gear) for shape, gear in zip(shapes, (sun, planet), strict=True)]
         parts = [each[SUN], self.count * each[PLANET]] if self.count else [each[PLANET]]
+        if self.carrier:
+            parts[PLANET] = parts[PLANET] + self.cheeks(pair)[2]
         every = (*parts, ring.volume)
         return tuple(np.where(fits & np.isfinite(part), part, np.inf)[()] for part in every)
+
+    def cheeks(self, pair: GearPair) -> tuple[Any, Any, Any]:
+        """Diameter, width [mm] of both together and volume [mm3] of the cheeks of the carrier."""
+        _, planet, _, distance = self.gears(pair)
+        across = 2.0 * (distance + CHEEK * planet.reference_diameter)
+        width = self.carrier * pair.face_width
+        return across, width, 0.25 * math.pi * width * across**2
 
     def slower(self, pair: GearPair, with_ring: bool) -> tuple[Any, Any]:
         """Torque and speed of the driving gear of a mesh over those of the pair's pinion.

@@ -31,13 +31,17 @@ class RingDesign(GearDesign):
 
 @dataclass(frozen=True)
 class Plate:
-    """A plate across a shaft that carries planets or a ring: its radius and ends along x [mm]."""
+    """A plate across a shaft that carries planets or a ring: its radius and ends along x [mm].
+
+    sized: whether it is of the design.
+    """
 
     stage: int
     shaft: int
     reach: float
     start: float
     end: float
+    sized: bool = False
 
 
 @dataclass(frozen=True)

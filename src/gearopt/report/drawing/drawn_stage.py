@@ -44,6 +44,8 @@ class DrawnStage:
     ring_tip_diameter_mm: float | None = None
     ring_outside_diameter_mm: float | None = None
     wheel_bore_mm: float | None = None
+    carrier_diameter_mm: float | None = None
+    carrier_width_mm: float | None = None
 
     @property
     def is_set(self) -> bool:
@@ -73,6 +75,11 @@ class DrawnStage:
     def width(self, member: str) -> float:
         """Face width [mm] of a gear."""
         return getattr(self, f"{member}_face_width_mm", None) or self.face_width_mm
+
+    @property
+    def room(self) -> float:
+        """Length [mm] along the shafts of its widest gear, or of a set and the carrier's cheeks."""
+        return max(map(self.width, MEMBERS)) + (self.carrier_width_mm or 0.0)
 
     @property
     def turns(self) -> list[float]:
@@ -142,9 +149,15 @@ class DrawnStage:
         reach += PIN * self.wheel_diameter_mm
         ring = shafts.get("ring") if self.is_set else shafts["wheel"]
         rows = [(ring, outer)] if ring is not None and self.type != "parallel" else []
-        if self.is_set:
-            rows.append((shafts.get("carrier", 2 * k + 1 - (ring or k)), reach))
         made = []
+        carrier = shafts.get("carrier", 2 * k + 1 - (ring or k))
+        if self.is_set and self.carrier_width_mm and self.carrier_diameter_mm:
+            for side in (-1.0, 1.0):
+                gears, end = (middle + 0.5 * side * b for b in (self.face_width_mm, self.room))
+                ends = min(gears, end), max(gears, end)
+                made.append(Plate(k, carrier, 0.5 * self.carrier_diameter_mm, *ends, sized=True))
+        elif self.is_set:
+            rows.append((carrier, reach))
         for shaft, radius in rows:
             side = 1.0 if shaft > k else -1.0
             start, end = (middle + side * (0.5 * self.face_width_mm + px / scale) for px in PLATE)

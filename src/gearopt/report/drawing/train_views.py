@@ -39,8 +39,8 @@ MAX_STAGES = 100  # in one line; a drive has six at most
 SET = 400.0  # px of the largest ring, at most
 NOT_SIZED = (
     " Rings are hatched where they are cut; of the planets those are seen whose axes lie in the "
-    "plane of the shafts. Plates and pins of carriers, and plates that hold rings, are not of the "
-    "design: they show what turns with which shaft."
+    "plane of the shafts. {}ins of carriers, and plates that hold rings, are not of the design: "
+    "they show what turns with which shaft."
 )
 
 
@@ -57,6 +57,7 @@ def section(result: Result, measures: Measures, hint: str = "") -> Section | Non
     inside = ", thin ones the insides of rims, hubs and bores" if any(webs) else ""
     picked = _picked(result.design["stages"])
     folded, single = is_folded(picked), len(picked) == 1
+    plates = "P" if all(s.carrier_width_mm for s in picked if s.is_set) else "Plates and p"
     rings = any(stage.type != "parallel" for stage in picked)
     lie = ", the output in line with the input, as both stages have one distance" * folded
     gaps = ", and the gaps between the stages are only as wide as the labels need" * (not single)
@@ -70,7 +71,7 @@ def section(result: Result, measures: Measures, hint: str = "") -> Section | Non
         f"Drawn to one scale; dimensions in {measures.lengths}: centre distances, length over "
         f"tip circles{total}, face widths b; {plural}; teeth z. Solid lines are tip circles, "
         f"dash-dotted ones reference circles{inside}; numbers in circles name the shafts, which "
-        f"are not drawn.{NOT_SIZED * rings}",
+        f"are not drawn.{NOT_SIZED.format(plates) * rings}",
     )
     return Section("Gears with all shafts in one plane", words=words, drawings=drawn)
 
@@ -202,7 +203,7 @@ def in_one_line(stages: Sequence[DrawnStage], folded: bool = False) -> tuple[Bod
     scale = min(scale, SET / max(sets)) if sets else scale
     if not 0.0 < scale < math.inf:
         raise ValueError(f"stages {long:g} mm long cannot be drawn")
-    wide = [max(map(stage.width, MEMBERS)) for stage in stages]
+    wide = [stage.room for stage in stages]
     apart = [0.0 if stage.idler else width for stage, width in zip(stages, wide, strict=True)]
     scale, starts = _along(apart, scale)
     idlers = [k for k, stage in enumerate(stages, 1) if stage.idler]  # their shafts
@@ -375,4 +376,9 @@ def _numbered(sheet: Sheet, train: Bodies, shaft: ShaftDesign) -> None:
 
 
 def _widths(train: Bodies) -> list[float]:
-    return [max(g.to_mm - g.from_mm for g in train.gears if g.stage == k) for (k,) in train.slabs]
+    wide = []
+    for (k,) in train.slabs:
+        ends = [(g.from_mm, g.to_mm) for g in train.gears if g.stage == k]
+        ends += [(p.start, p.end) for p in train.plates if p.stage == k and p.sized]
+        wide.append(max(b for _, b in ends) - min(a for a, _ in ends))
+    return wide

@@ -142,11 +142,16 @@ def disc(stage: StageDesign) -> Planetary | None:
     """A planetary stage as a layout sees it; None of other stages."""
     if stage.type != "planetary" or stage.ring_outside_diameter_mm is None:
         return None
-    return Planetary(stage.ring_outside_diameter_mm, stage.face_width_mm, stage.ratio)
+    wide = stage.face_width_mm + (stage.carrier_width_mm or 0.0)
+    return Planetary(stage.ring_outside_diameter_mm, wide, stage.ratio)
 
 
 def _disc(body: Body, stage: StageDesign, shaft: int) -> GearDesign:
-    """The ring of a planetary stage as a gear on its input shaft, of its outside diameter."""
+    """The ring of a planetary stage as a gear on its input shaft, of its outside diameter.
+
+    A cheek of its carrier, where it counts, is beside it on both sides.
+    """
+    cheek = 0.5 * (stage.carrier_width_mm or 0.0)
     return GearDesign(
         name=body.name,
         stage=shaft,
@@ -158,8 +163,8 @@ def _disc(body: Body, stage: StageDesign, shaft: int) -> GearDesign:
         tip_diameter_mm=2.0 * body.radius,
         root_diameter_mm=stage.ring_root_diameter_mm or 0.0,
         helix_angle_deg=stage.helix_angle_deg,
-        from_mm=body.x[0],
-        to_mm=body.x[1],
+        from_mm=body.x[0] + cheek,
+        to_mm=body.x[1] - cheek,
     )
 
 

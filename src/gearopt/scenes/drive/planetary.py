@@ -313,6 +313,7 @@ def ways(scene: "Scene", own: StageTable) -> Iterator[Planets]:
             own.mesh_order or "any",
             Planets.clearance if own.planet_clearance is None else float(own.planet_clearance),
             diameter.value if diameter else math.inf,
+            carrier=float(own.carrier_over_face_width or 0),
         )
 
 
@@ -348,8 +349,17 @@ def planet_assumptions(scene: "Scene") -> Iterator[str]:
     yield (
         "Sun, planets and ring, or a pinion in a ring, are put together axially and count as "
         "cylinders of the mean diameter (d_a + d_f)/2, a ring as the tube from there to its "
-        "outside; carrier, pins and bearings are left out."
+        "outside; pins and bearings are left out."
     )
+    cheeks = [own.carrier_over_face_width for own in stages if own.type == PLANETARY]
+    if any(cheeks):
+        yield (
+            "Carriers count in volume and mass as two discs of the material of their planets, 2 a "
+            "+ 0.7 d_p in diameter, as wide together as carrier_over_face_width has it, with "
+            "neither a hub nor what joins them."
+        )
+    if not all(cheeks):
+        yield "Carriers of planetary stages without carrier_over_face_width are left out."
     if any(own.type == PLANETARY for own in stages):
         yield (
             "Profile shifts that the file does not give follow a rule of this program: the centre "

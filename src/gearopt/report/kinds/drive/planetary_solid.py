@@ -29,9 +29,12 @@ PIN, MARGIN, PLATE = 0.35, 0.04, 0.12  # of a planet's root diameter; of the fac
 COLOURS = {"sun": series(1), "planet": series(2), "ring": series(3), "carrier": "--metal"}
 CAPTION = (
     f"{TURN} Teeth as the tools cut them, thinned by 3 % of half a pitch so that the flanks are "
-    "seen apart. Carrier and pins are not of the design: they are drawn to show what turns "
-    "together."
+    "seen apart. "
 )
+OF_CARRIER = {  # by whether the design has one
+    False: "Carrier and pins are not of the design: they are drawn to show what turns together.",
+    True: "One cheek of the carrier is drawn; pins are not of the design.",
+}
 
 
 def figure(
@@ -43,14 +46,16 @@ def figure(
     flank = next((n for n in FLANKS if n * points < POINTS), FLANKS[-1])
     b, outer = stage.face_width_mm, 0.5 * (stage.ring_outside_diameter_mm or 0.0)
     pin = 0.5 * (stage.wheel_bore_mm or PIN * stage.wheel_root_diameter_mm)
-    start, end = -PLATE * b, -MARGIN * b
+    end, reach = -MARGIN * b, 0.5 * (stage.carrier_diameter_mm or 0.0)
+    reach = reach or seen.distance + 2.0 * pin
+    start = end - 0.5 * (stage.carrier_width_mm or 2.0 * (PLATE - MARGIN) * b)
     rods = [Rod(it.centre, pin, end, -end + b, "metal") for _, it in placed[1:-1]]
     bodies = [(name, gear_mesh(it, flank, TWIST)) for name, it in placed[:-1]]
     ring = placed[-1][1]  # its faces look towards the axis
     spots, faces = gear_mesh(ring, flank, TWIST, [(b, outer), (0.0, outer)])
     bodies.append(("ring", (spots, [(i, k, j) for i, j, k in faces])))
     bodies += [("carrier", rod(it.centre, pin, it.start, it.end)) for it in rods]
-    bodies.append(("carrier", rod((0.0, 0.0), seen.distance + 2.0 * pin, start, end)))
+    bodies.append(("carrier", rod((0.0, 0.0), reach, start, end)))
     traces: list[dict[str, Any]] = []
     for name, mesh in bodies:
         first = not any(trace["name"] == name for trace in traces)
@@ -63,7 +68,8 @@ def figure(
     drawn = still(solids, (low, high), view(), texts, f"stage {number} in space")
     without = replace(drawn, caption=f"{drawn.caption} Ring and plate of the carrier left out.")
     seen_whole = space((start, *low[1:]), high, measures, 560)
-    return Figure(traces, seen_whole, f"Stage {number}. {CAPTION}", without)
+    words = f"Stage {number}. {CAPTION}{OF_CARRIER[bool(stage.carrier_width_mm)]}"
+    return Figure(traces, seen_whole, words, without)
 
 
 def _placed(

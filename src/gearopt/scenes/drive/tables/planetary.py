@@ -140,6 +140,12 @@ class PlanetaryKeys(Table):
         description="Smallest gap of the tip circles of neighbouring planets, in normal modules; "
         "by default 0.5 (a rule of thumb of this program)",
     )
+    carrier_over_face_width: Annotated[Fraction | None, number(0.5, 0, 10)] = Field(
+        None,
+        description="Width of both cheeks of the carrier over the face width, which then count in "
+        "volume and mass as solid discs, 0.7 d_p larger than the circle of the planets' axes; "
+        "without it the carrier is left out",
+    )
     mesh_order: Annotated[str | None, choice(*ORDERS)] = Field(
         None,
         description="How planets mesh: any (by default); simultaneous: z_s a multiple of their "
