@@ -190,6 +190,11 @@ def test_materials_of_a_ring_are_asked_for_by_its_name():
         ({"limits": None}, r"limits: is missing .*sun_teeth.*pinion_teeth = \[12, 40\]"),
         ({"stage[1].type": "Planetenstufe"}, 'Write type = "planetary"'),
         ({"stage[1].annulus_teeth": 80}, r"annulus_teeth = 80: .*Write ring_teeth"),
+        (
+            {"stage[1].planet": [3, 5], "stage[1].planets": None},
+            r"planet = \[3, 5\]: \[\[stage\]\] has no key planet.* Write planets = \[3, 5\]$",
+        ),
+        ({"stage[1].sun": 21}, r"Write a table \[stage\.sun\] with bore = \"40 mm\"$"),
         ({"stage[1].planet_teeth_reduction": 0.3}, r"= 0\.3: .*no multiple of 0\.5"),
     ],
 )

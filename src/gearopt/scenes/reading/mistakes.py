@@ -1,5 +1,6 @@
 """Mistakes of a file as a SceneError: where, the rule, and what to write instead."""
 
+import re
 import tomllib
 from collections.abc import Iterator
 from decimal import Decimal
@@ -36,11 +37,16 @@ def wrong_value(
 def _instruction(key: str, write: Any, sample: bool) -> str:
     name = key.rsplit(".", 1)[-1]
     if isinstance(write, dict):
-        table = f"[[{name.split('[')[0]}]]" if name.endswith("]") else f"[{name}]"
-        return f"Write a table {table} with {_pairs(write)}"
+        return f"Write a table {_title(key)} with {_pairs(write)}"
     if isinstance(write, list) and write and isinstance(write[0], dict):
         return f"Write tables [[{name}]], such as one with {_pairs(write[0])}"
     return f"Write{', for example,' if sample else ''} {name} = {short(write, 200)}"
+
+
+def _title(key: str) -> str:
+    """The title of the table at a key: `[[stage]]` of stage[1], `[stage.ring]` of stage[1].ring."""
+    name = re.sub(r"\[\d+\]", "", key)
+    return f"[[{name}]]" if key.endswith("]") else f"[{name}]"
 
 
 def _pairs(table: dict[str, Any]) -> str:
@@ -106,7 +112,7 @@ def _mistake(
     if error["type"] == "missing":
         return wrong_value(file, key, None, "is missing", example_of(model, place), sample=True)
     if error["type"] != "gearopt":
-        return _no_table(file, model, place, value)
+        return _no_table(file, model, content, place)
     if name := _near_name(model, content, place):  # [[stages]] for [[stage]]
         return wrong_name(file, key, name)
     rule, write, action = context["rule"], context["write"], context["action"]
@@ -125,9 +131,19 @@ def _mistake(
     return wrong_value(file, key, value, rule, write, sample)
 
 
-def _no_table(file: str, model: type[BaseModel], place: tuple[Any, ...], value: Any) -> SceneError:
+def _no_table(
+    file: str, model: type[BaseModel], content: dict[str, Any], place: tuple[Any, ...]
+) -> SceneError:
     """Return the error for another value where a table, or a list of tables, belongs."""
-    name = next(part for part in reversed(place) if isinstance(part, str))
+    name, (value, _) = (
+        next(p for p in reversed(place) if isinstance(p, str)),
+        _lookup(content, place),
+    )
+    if meant := _near_name(model, content, place):  # planet = 3 for planets = 3
+        above, key = _title(dotted(place[:-1])) if place[:-1] else "the file", dotted(place)
+        rule = f"{above} has no key {name}, but a table of that name"
+        way, fix = f"Write {meant} = {short(value, 200)}", Fix("rename", key, meant)
+        return SceneError(file, key, short(value), rule, way, fix)
     many = isinstance(place[-1], str) and _is_many(model, place)
     rule = f"is not a list of tables [[{name}]]" if many else "is not a table"
     write = example_of(model, place)
@@ -299,4 +315,5 @@ def example_of(model: type[BaseModel], place: tuple[Any, ...]) -> Any:
     required = {
         n: example_of(table, (n,)) for n, f in table.model_fields.items() if f.is_required()
     }
-    return shown if present else required
+    first = next(iter(table.model_fields))
+    return shown if present else required or {first: example_of(table, (first,))}
