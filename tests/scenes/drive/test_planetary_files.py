@@ -8,6 +8,7 @@ import pytest
 from campaigns import few
 
 import gearopt
+from gearopt import Budget
 from gearopt.errors import SceneError
 from gearopt.report.kinds.drive.rating_words import _in_stages
 from gearopt.scenes.drive.notes import assumptions
@@ -344,6 +345,26 @@ def test_what_stages_with_a_ring_may_have_instead_is_found_and_true(name):
     assert keys <= {change.key.split(".")[-1] for way in ways for change in way.changes}
     for way in ways:
         assert gearopt.solve(asked, way.edits).value is not None
+
+
+INNER = {"type": "internal", "ring_teeth": [20, 60]}
+FIVE = {"type": "planetary", "planets": 5}
+
+
+@pytest.mark.parametrize(
+    ("ratio", "stages", "key"),
+    few([(1.1, [INNER], "duty.ratio"), (40, [FIVE, FIVE], "stage[1].planets")], 0),
+)
+def test_a_ring_too_close_to_its_pinion_or_planets_too_many_have_a_way_out(ratio, stages, key):
+    """z_r = 1.1 z of 60 teeth at most interfere; five planets have no room at a ratio above 6."""
+    asked = tomllib.loads(STAGE.read_text())
+    asked["duty"] = {"power": "15 kW", "input_speed": "1480 rpm", "ratio": ratio}
+    del asked["x-expected"]
+    asked["stage"] = stages
+    explained = gearopt.explain(asked)
+    (way,) = (w for w in explained.remedies if [c.key for c in w.changes] == [key])
+    assert gearopt.solve(asked, way.edits, budget=Budget(seconds=60)).value is not None
+    assert not any("sun" in name for name in explained.conflict) or len(stages) == 2
 
 
 @pytest.mark.slow

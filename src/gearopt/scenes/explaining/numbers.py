@@ -159,7 +159,7 @@ def _content(value: Any, path: Path) -> Any:
     return written(value, path)
 
 
-def times(value: Any, factor: float) -> Any:
+def times(value: Any, factor: float | Fraction) -> Any:
     """Return a number of a file times a factor, unrounded."""
     if isinstance(value, Quantity):
         return replace(value, number=value.number * Fraction(factor))

@@ -14,7 +14,7 @@ from gearopt.scenes.drive.planetary import SHARING
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.drive import StageTable
 from gearopt.scenes.drive.tables.planetary import PLANETARY, Teeth
-from gearopt.scenes.explaining.numbers import Path, at, put, times, written
+from gearopt.scenes.explaining.numbers import SHORT, Path, at, cut, put, times, written
 from gearopt.scenes.reading.toml_writing import dotted, toml_text
 
 OF_PLANETS = (  # what is asked of the teeth of such a stage, the dearest to drop
@@ -24,6 +24,7 @@ OF_PLANETS = (  # what is asked of the teeth of such a stage, the dearest to dro
 )
 WIDER = 1.25  # by which ranges of teeth are dropped
 MEMBERS = ("sun", "planet", "ring")
+RATIOS = "1.02", "1.05", "1.1", "1.15", "1.2", "1.3", "1.5", "2"  # by which ratios are tried
 STEPS, TIMES = 12, (1.1, 1.25, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)  # teeth and diameters that are tried
 
 
@@ -86,6 +87,11 @@ def ways_of_planets(scene: Scene) -> Iterator[Iterator[tuple[tuple[Change, ...],
     for k, own in enumerate(scene.stage):
         for path, values in _next_values(own) if own.epicyclic else ():
             yield _changed(scene, ("stage", k, *path), values)
+    if scene.duty.asks_ratio and any(own.epicyclic for own in scene.stage):
+        key = "ratio" if scene.duty.output_speed is None else "output_speed"
+        each = [Fraction(f) ** way for f in RATIOS for way in (1, -1)]
+        now = getattr(scene.duty, key)
+        yield _changed(scene, ("duty", key), [cut(times(now, f), 1, SHORT) for f in each])
 
 
 def _changed(
@@ -113,7 +119,7 @@ def _next_values(own: StageTable) -> Iterator[tuple[tuple[str, ...], list[Any]]]
         known = SHARING_RULES[SHARING].values if own.mesh_load_factor is None else range(2, 8)
         low, high = own.counts[0], own.counts[-1]
         counts = [n for n in known if not low <= n <= high]
-        counts.sort(key=lambda n: min(abs(n - low), abs(n - high)))
+        counts.sort(key=lambda n: (n > high, min(abs(n - low), abs(n - high))))  # fewer have room
         yield ("planets",), [(n, n) for n in counts]
         yield ("mesh_order",), [None] * (own.mesh_order is not None)
         yield ("planet_teeth_reduction",), [None] * (own.planet_teeth_reduction is not None)

@@ -34,23 +34,28 @@ def choices(scene: Scene, known: Conflict, works: Works) -> Iterator[Remedy]:
         (DISTANCE, _finer_distances),
         ("", _others),
     )
-    for each in ways_of_planets(scene):
-        for changes, other in each:
-            if allowed(other) and works(other):
-                what = changes[0].key.split(".")[-1]
-                yield Remedy("choice", what, changes, 1.0, None, {"with": "feasible"})
-                break
     families = {name.split("[")[0] for name in known.names}
     for name, ways in every:
         if name and families and name not in families:
             continue
-        for changes, other in ways(scene):
-            if allowed(other) and works(other):
-                what = ", ".join(change.key.split(".")[-1] for change in changes)
-                yield Remedy("choice", what, changes, 1.0, None, {"with": "feasible"})
-                break
+        yield from _first(ways(scene), works)
     if scene.teeth is not None:
         yield from _stages(scene, works)
+
+
+def choices_of_planets(scene: Scene, works: Works) -> Iterator[Remedy]:
+    """Yield what stages with planets or a ring may write otherwise, each key alone."""
+    for ways in ways_of_planets(scene):
+        yield from _first(ways, works)
+
+
+def _first(ways: Ways, works: Works) -> Iterator[Remedy]:
+    """Yield the first way that suffices, if one does."""
+    for changes, other in ways:
+        if allowed(other) and works(other):
+            what = ", ".join(change.key.split(".")[-1] for change in changes)
+            yield Remedy("choice", what, changes, 1.0, None, {"with": "feasible"})
+            return
 
 
 def _materials(scene: Scene) -> Ways:

@@ -12,7 +12,7 @@ from gearopt.scenes.drive.driving import trains
 from gearopt.scenes.drive.explain.choice_moves import choice_groups, teeth_groups
 from gearopt.scenes.drive.explain.influences import GRADES, eases
 from gearopt.scenes.drive.explain.moves import WIDTH, next_module
-from gearopt.scenes.drive.explain.rated_choices import choices
+from gearopt.scenes.drive.explain.rated_choices import choices, choices_of_planets
 from gearopt.scenes.drive.explain.rated_conflict import Conflict, conflict
 from gearopt.scenes.drive.explain.requirements import (
     DISTANCE,
@@ -23,6 +23,7 @@ from gearopt.scenes.drive.explain.requirements import (
 )
 from gearopt.scenes.drive.explain.tried import Case, any_possible
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.planetary import INTERNAL
 from gearopt.scenes.explaining.engine import (
     FeasibilityQuestions,
     Group,
@@ -91,20 +92,24 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
         asked.likely = lambda other, clock: Verdict(like(other))
     turns = _Turns(soon(ROUGH_SECONDS), lambda: soon(OTHERS_SECONDS), asked)
     ways = singles(asked, turns.until(_groups(scene, known, asked)), sharpen)
+    of_planets = soon(CHOICE_SECONDS)
+    around = [*choices_of_planets(scene, lambda o: None if of_planets.over else works(o))]
+    short = of_planets.over
     if not ways:
-        turns = replace(turns, first=clock, over=False)
+        rest = soon(ROUGH_SECONDS) if around else clock
+        turns = replace(turns, first=rest, over=False)
         unnamed = Conflict(whatever_load=known.whatever_load)
         groups = turns.until(_groups(scene, unnamed, asked, LAST_FACTOR))
         ways = singles(asked, groups, sharpen)
     last = soon(CHOICE_SECONDS)
     chosen = choices(scene, known, lambda other: None if last.over else works(other))
-    ways += chosen
+    ways += [*around, *chosen]
     if early.clock.over and not known.proven:
         again = conflict(replace(early, clock=soon(CONFLICT_SECONDS_LATER), open=[]))
         known = again if again.names else known
     complete = not (turns.over or clock.over or case.open)
     late = "time ran out before all remedies were tried" if clock.over else ""
-    late = late or ("not all remedies were tried" if turns.over or last.over else "")
+    late = late or ("not all remedies were tried" if turns.over or last.over or short else "")
     words = "; ".join(filter(None, (_doubts(known, case), late)))
     names, unsure = (_told(scene, each) for each in (known.names, known.unsure))
     return Remedies(names, with_least(ways, complete), words, known.any_resolves, unsure)
@@ -114,7 +119,9 @@ def _told(scene: Scene, names: Sequence[str]) -> tuple[str, ...]:
     """Names of a conflict; safety factors are those of a peak torque, too, where there is one."""
     peak = scene.rating is not None and scene.rating.static_torque_factor is not None
     tail = "_or_that_at_the_peak_torque" * peak
-    return tuple(f"{name}{tail}" if name in SAFETIES else name for name in names)
+    inner = [f"[{k}]" for k, own in enumerate(scene.stage, 1) if own.type == INTERNAL]
+    called = [n.replace("sun", "pinion") if n.endswith((*inner,)) else n for n in names]
+    return tuple(f"{name}{tail}" if name in SAFETIES else name for name in called)
 
 
 @dataclass
