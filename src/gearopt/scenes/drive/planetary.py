@@ -179,7 +179,9 @@ def _check_gears(scene: "Scene", own: StageTable, k: int) -> None:
     if own.ring.outside_diameter is not None and gear_of(own.ring).rim_over_module is not None:
         rule = "conflicts with outside_diameter; one is enough"
         raise refuse(rule, at=("stage", k, "ring", "rim_over_module"), action="remove")
-    iso = scene.rating is None or scene.rating.standard != "agma"
+    of_all = scene.rating.iso6336.given if scene.rating else own.given_iso6336
+    given = of_all.factors() | own.given_iso6336.factors()
+    iso = "Y_B" not in given and (scene.rating is None or scene.rating.standard != "agma")
     rim = gear_of(own.ring).rim_over_module
     if iso and rim is not None and rim <= THIN_RING:
         rule = f"is {THIN_RING:g} or less, for which ISO 6336 has no Y_B of rings"

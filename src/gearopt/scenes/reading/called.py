@@ -61,6 +61,8 @@ DRIVE = {
     "ring_gear annulus annulus_teeth stage.annulus_teeth hohlrad",
     'mesh_load_factor, in a [[stage]] of type = "planetary"': "k_gamma load_sharing_factor "
     "lastaufteilungsfaktor",
+    'carrier_over_face_width, in a [[stage]] of type = "planetary"': "carrier_width cheek_width "
+    "carrier_thickness stage.carrier stegbreite",
     "reversed_load, of a gear": "reverse_bending alternating alternating_load wechselbiegung",
     "tool_protuberance, of a gear": "protuberance",
     "tip_chamfer, of a gear, in normal modules": "chamfer tip_form_diameter d_na kopfkantenbruch",
