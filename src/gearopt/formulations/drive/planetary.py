@@ -557,8 +557,8 @@ class InPlanetaryMesh:
     def _shape(self) -> Any:
         """What gears and their room depend on."""
         own = self.planets
-        made = own.cutting, own.held, own.fewer, own.count, own.clearance, own.spaced
-        return made, self.with_ring, self.turned
+        gears = own.cutting, own.held, own.fewer, own.count, own.clearance, own.spaced
+        return gears, self.with_ring, self.turned
 
     def prepared(self, pair: GearPair) -> Ready:
         """Numbers of pairs (n,) that `rows` takes, of any load and width."""

@@ -469,7 +469,7 @@ def _combined(own: StageTable, planets: Planets, each: Sequence[Option], agma: b
     """One way of making a stage of those of its meshes; agma: AGMA is the first standard."""
     standards: list[Any] = []
     rated_rings: list[Any] = [*each[-1].standards]
-    planets = replace(planets, thinnest=max(one.thinnest_ring for one in rated_rings))
+    planets = replace(planets, thinnest=max(by.thinnest_ring for by in rated_rings))
     for k, one in enumerate(each):
         with_ring = k == len(each) - 1
         words = "" if len(each) == 1 else "_of_ring" if with_ring else "_of_sun"
@@ -479,8 +479,8 @@ def _combined(own: StageTable, planets: Planets, each: Sequence[Option], agma: b
             if n or not agma:
                 at = replace(rated.practice, meshes=at_once(own, planets.count, with_ring))
                 rated = replace(rated, practice=at)
-            made = InPlanetaryMesh(rated, planets, with_ring, words + rated.suffix, turned=turned)
-            standards.append(made)
+            name = words + rated.suffix
+            standards.append(InPlanetaryMesh(rated, planets, with_ring, name, turned=turned))
     first, last = each[0], each[-1]
 
     def three(name: str) -> Any:

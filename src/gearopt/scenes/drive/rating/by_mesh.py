@@ -131,24 +131,24 @@ def meshes_by(
     """`rated_meshes`; AGMA rates a sun with more teeth than a planet as the wheel."""
     if not standard.FEWER_FIRST or not any(own.as_mesh for own in scene.stage_tables):
         return rated_meshes(scene, pairs, standard, names)
-    turned, both, made = with_fewer_first(scene, pairs, names)
-    rated = rated_meshes(turned, both, standard, made)
+    turned, both, materials = with_fewer_first(scene, pairs, names)
+    rated = rated_meshes(turned, both, standard, materials)
     rows = zip(rated, pairs, scene.stage_tables, strict=True)
     return [sun_first(mesh, pair, own.as_mesh) for mesh, pair, own in rows]
 
 
 def with_fewer_first(scene: Scene, pairs: tuple[GearPair, ...], names: Materials) -> Meshes:
     """Meshes of a drive in which a sun with more teeth than a planet is the wheel, as by AGMA."""
-    tables, both, made = list(scene.stage_tables), list(pairs), list(names)
+    tables, both, materials = list(scene.stage_tables), list(pairs), list(names)
     for k, (own, pair) in enumerate(zip(scene.stage_tables, pairs, strict=True)):
         mesh = own.as_mesh
         if mesh is None or own.type != PLANETARY or not 0.0 < pair.ratio < 1.0:
             continue
         turned = replace(mesh, slower=mesh.slower * float(pair.ratio))
         swapped = copied(own, {"pinion": own.wheel, "wheel": own.pinion})
-        tables[k], made[k] = swapped.rated_as(turned), names[k][::-1]
+        tables[k], materials[k] = swapped.rated_as(turned), names[k][::-1]
         both[k] = replace(pair, pinion=pair.wheel, wheel=pair.pinion)
-    return scene.model_copy(update={"stage": tuple(tables)}), tuple(both), made
+    return scene.model_copy(update={"stage": tuple(tables)}), tuple(both), materials
 
 
 def sun_first(mesh: Mesh, pair: GearPair, own: AsMesh | None) -> Mesh:
