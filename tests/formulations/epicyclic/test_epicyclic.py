@@ -8,6 +8,7 @@ from itertools import product
 import numpy as np
 import pytest
 from campaigns import few
+from train_of_meshes import Mesh, balances, speeds
 
 from gearopt.formulations.epicyclic import problem
 from gearopt.formulations.epicyclic.request import (
@@ -25,7 +26,6 @@ from gearopt.formulations.epicyclic.search import best
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
-from gearopt.physics.planetary.kinematics import Mesh, balances, speeds
 from gearopt.physics.planetary.willis import Use
 
 ONE = (("sun", "ring", "carrier"),)

@@ -5,9 +5,9 @@ from itertools import permutations
 
 import numpy as np
 import pytest
+from train_of_meshes import Mesh, balances, speeds
 
-from gearopt.physics.planetary.kinematics import Mesh, balances, speeds
-from gearopt.physics.planetary.willis import Use, efficiency, ratio_parts
+from gearopt.physics.planetary.willis import Use, efficiency, flow, ratio_parts, set_teeth
 
 SIMPLE = ("sun", "ring", "carrier")
 WOLFROM = (("sun", "ring1", "carrier"), ("sun", "ring2", "carrier"))
@@ -145,7 +145,7 @@ def test_speeds_that_contradict_each_other_or_do_not_suffice():
 
 
 def case(rng):
-    """A random train of one of four arrangements: meshes, its closed form, teeth and losses."""
+    """A random train of one of four arrangements: meshes, sets, their teeth and losses."""
     z = [int(v) for v in rng.integers(12, 90, 6)]
     etas = [F(int(v), 1000) for v in rng.integers(900, 1000, 4)]
     kind = int(rng.integers(4))
@@ -153,17 +153,17 @@ def case(rng):
     if kind == 0:
         meshes = [Mesh("sun", "p", "carrier", s, p, etas[0])]
         meshes.append(Mesh("p", "ring", "carrier", p, -(s + 2 * p), etas[1]))
-        sets, teeth, shared = (SIMPLE,), [(s, s + 2 * p)], False
+        sets, teeth, shared = (SIMPLE,), [(s, p, p, s + 2 * p)], False
     elif kind == 1:
         r = s + p + q
         meshes = [Mesh("sun", "p", "carrier", s, p, etas[0])]
         meshes.append(Mesh("p", "ring", "carrier", q, -r, etas[1]))
-        sets, teeth, shared = (SIMPLE,), [(s * q, p * r)], False
+        sets, teeth, shared = (SIMPLE,), [(s, p, q, r)], False
     elif kind == 2:
         r, t = s + 2 * p, s + p + q
         meshes = wolfrom(s, p, r, q, t, (etas[0], etas[1], etas[2]))
         etas = [etas[0], etas[1], etas[0], etas[2]]
-        sets, teeth, shared = WOLFROM, [(s, r), (s * q, p * t)], True
+        sets, teeth, shared = WOLFROM, [(s, p, p, r), (s, p, q, t)], True
     else:
         names, teeth = [f"{n}{k}" for k in (1, 2) for n in SIMPLE], []
         joined = JOINED[int(rng.integers(len(JOINED)))]
@@ -172,7 +172,7 @@ def case(rng):
         sets = (tuple(names[:3]), tuple(names[3:]))
         for k, name in enumerate(sets):
             s, p = z[2 * k : 2 * k + 2]
-            teeth.append((s, s + 2 * p))
+            teeth.append((s, p, p, s + 2 * p))
             meshes.append(Mesh(name[0], f"p{k}", name[2], s, p, etas[2 * k]))
             meshes.append(Mesh(f"p{k}", name[1], name[2], p, -s - 2 * p, etas[2 * k + 1]))
         shared = False
@@ -194,7 +194,8 @@ def test_two_ways_agree(seed):
     """200 random trains: the linear system of all meshes against Willis and Cramer, exactly."""
     rng = np.random.default_rng(seed)
     for _ in range(40):
-        meshes, sets, teeth, etas, shared = case(rng)
+        meshes, sets, numbers, etas, shared = case(rng)
+        teeth = set_teeth(numbers)
         names = list(dict.fromkeys(n for group in sets for n in group))
         held = len(names) - len(sets) - 1
         order = [str(n) for n in rng.permutation(names)]
@@ -212,10 +213,21 @@ def test_two_ways_agree(seed):
         losses = [(etas[2 * k], etas[2 * k + 1]) for k in range(len(sets))]
         eta = efficiency(use, exact, losses)
         assert eta == min((f.efficiency for f in flows), default=0)
-        for flow in flows:
-            assert sum(flow.torques.values()) == 0
-            power = sum(t * turning[n] for n, t in flow.torques.items())
-            assert power == sum(m.lost for m in flow.meshes) and 0 < flow.efficiency <= 1
+        for other in flows:
+            assert sum(other.torques.values()) == 0
+            power = sum(t * turning[n] for n, t in other.torques.items())
+            assert power == sum(m.lost for m in other.meshes) and 0 < other.efficiency <= 1
+        known = flow(use, numbers, losses)
+        assert [*known.speeds.values()] == [*turning.values()]
+        if not flows:
+            assert (known.torques, known.meshes, known.efficiency) == ({}, (), 0)
+            continue
+        least = min(flows, key=lambda f: f.efficiency)
+        assert {n: t for n, t in known.torques.items() if t} == {
+            n: t for n, t in least.torques.items() if t
+        }
+        powers = [(m.rolling, m.lost, m.driver in names) for m in known.meshes]
+        assert powers == [(m.rolling, m.lost, m.driver in names) for m in least.meshes]
         arrays = [(np.array([a]), np.array([b])) for a, b in teeth]
         by_floats = efficiency(use, arrays, [(float(a), float(b)) for a, b in losses])
         assert by_floats[0] == pytest.approx(float(eta), rel=1e-11, abs=1e-300)

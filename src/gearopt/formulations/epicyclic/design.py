@@ -4,14 +4,11 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import Annotated
 
-from gearopt.formulations.epicyclic.request import COUPLED, SETS, Request
+from gearopt.formulations.epicyclic.request import Request
 from gearopt.frozen import dataclass
 from gearopt.optimise.typed import Shown
 from gearopt.physics.planetary import assembly
-from gearopt.physics.planetary.kinematics import Balance, Mesh, MeshPower, balances, speeds
-from gearopt.physics.planetary.willis import Use
-
-PLANETS = ("planets", "planets2")  # members, as speeds and places name them
+from gearopt.physics.planetary.willis import PLANETS, Flow, MeshPower, Use, flow
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,24 +76,11 @@ class EpicyclicDesign:
     gap_modules: float
 
 
-def meshes(request: Request, z: Sequence[int]) -> list[Mesh]:
-    """The meshes of all gears of a train; one planet stands for all of a carrier."""
-    known: dict[int, Mesh] = {}
-    sets = zip(SETS[request.arrangement], request.use.sets, request.losses, strict=True)
-    for k, ((s, p, q, r), (sun, ring, carrier), (at_sun, at_ring)) in enumerate(sets):
-        planets = PLANETS[k if request.arrangement == COUPLED else 0]
-        known.setdefault(s, Mesh(sun, planets, carrier, z[s], z[p], at_sun))
-        known[r] = Mesh(planets, ring, carrier, z[q], -z[r], at_ring)
-    return [*known.values()]
-
-
 def describe(request: Request, z: Sequence[int]) -> EpicyclicDesign:
     """The train of numbers of teeth that has a ratio."""
-    use, known = request.use, meshes(request, z)
-    turning = speeds(known, {use.source: Fraction(1)} | dict.fromkeys(use.held, Fraction(0)))
-    flows = balances(known, turning, use.source, use.sink, use.held)
-    flow = min(flows, key=lambda balance: balance.efficiency, default=None)
-    ratio, asked = 1 / turning[use.sink], request.ratio
+    use, sets = request.use, request.sets(z)
+    known = flow(use, sets, request.losses)
+    ratio, asked = 1 / known.speeds[use.sink], request.ratio
     gears = enumerate(request.gears)
     return EpicyclicDesign(
         arrangement=request.arrangement,
@@ -105,22 +89,20 @@ def describe(request: Request, z: Sequence[int]) -> EpicyclicDesign:
         ratio=float(ratio),
         exact_ratio=str(ratio),
         ratio_error_percent=None if asked is None else 100.0 * float(ratio / asked - 1),
-        efficiency=float(flow.efficiency) if flow else 0.0,
-        members=tuple(_members(use, turning, flow)),
-        meshes=tuple(map(_power, flow.meshes if flow else ())),
+        efficiency=float(known.efficiency),
+        members=tuple(_members(use, known)),
+        meshes=tuple(map(_power, known.meshes)),
         places=tuple(_places(request, z)),
         gap_modules=min(float(apart - tips) for apart, tips in request.neighbours(z)),
     )
 
 
-def _members(use: Use, turning: dict[str, Fraction], flow: Balance | None) -> Iterator[Member]:
-    uses = dict.fromkeys(use.free, "free") | dict.fromkeys(use.held, "fixed")
-    uses |= {use.source: "input", use.sink: "output"}
-    for name, speed in turning.items():
-        torque = None if flow is None else float(flow.torques.get(name, 0))
+def _members(use: Use, known: Flow) -> Iterator[Member]:
+    for name, speed in known.speeds.items():
+        torque = float(known.torques.get(name, 0)) if known.torques else None
         yield Member(
             name=name,
-            use=uses.get(name, ""),
+            use=use.roles.get(name, ""),
             speed=float(speed),
             exact_speed=str(speed),
             torque=torque,
@@ -130,9 +112,9 @@ def _members(use: Use, turning: dict[str, Fraction], flow: Balance | None) -> It
 
 def _power(known: MeshPower) -> RollingPower:
     return RollingPower(
-        gears=f"{known.mesh.first}, {known.mesh.second}",
+        gears=", ".join(known.gears),
         driver=known.driver,
-        efficiency=float(known.mesh.efficiency),
+        efficiency=float(known.efficiency),
         rolling_power=float(known.rolling),
         lost=float(known.lost),
     )
@@ -142,18 +124,18 @@ def _places(request: Request, z: Sequence[int]) -> Iterator[Place]:
     """Places of all planets; phases of a Wolfrom train at its first ring."""
     for k, (count, n) in enumerate(zip(request.places(z), request.planets, strict=True)):
         sun, _, _, ring = request.sets(z)[k]
-        for j, place in enumerate(assembly.spread(count, n).tolist()):
-            turn = Fraction(j, n) if request.equal else Fraction(place, int(count))
-            yield place_at(PLANETS[k], j + 1, turn, sun, ring)
+        turns = assembly.turns(n if request.equal else int(count), n)
+        yield from placed(PLANETS[k], turns, sun, ring)
 
 
-def place_at(of: str, planet: int, turn: Fraction, sun: int, ring: int) -> Place:
-    """The place of a planet, its number from 1, at a part of a turn; teeth of sun and ring."""
-    return Place(
-        planets=of,
-        planet=planet,
-        angle_deg=360.0 * float(turn),
-        turn=str(turn),
-        sun_phase=float(sun * turn % 1),
-        ring_phase=float(ring * turn % 1),
-    )
+def placed(of: str, turns: Sequence[Fraction], sun: int, ring: int) -> Iterator[Place]:
+    """Planets at parts of a turn; teeth of sun and ring."""
+    for number, turn in enumerate(turns, 1):
+        yield Place(
+            planets=of,
+            planet=number,
+            angle_deg=360.0 * float(turn),
+            turn=str(turn),
+            sun_phase=float(sun * turn % 1),
+            ring_phase=float(ring * turn % 1),
+        )

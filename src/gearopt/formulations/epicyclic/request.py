@@ -82,7 +82,7 @@ class Request:
 
     def parts(self, z: Columns) -> list[tuple[Any, Any]]:
         """Teeth ratio r = b/a of every set as (a, b) in whole numbers."""
-        return [(s * q, p * r) for s, p, q, r in self.sets(z)]
+        return willis.set_teeth(self.sets(z))
 
     def error(self, z: Columns) -> Any:
         """|i/u - 1| in doubles; infinite where input or output cannot turn, 0 if none is asked."""

@@ -5,14 +5,13 @@ from typing import Any
 
 from gearopt.formulations.servo.servo_design import KG_M2, GearheadDesign, Spring, StiffnessDesign
 from gearopt.physics.planetary.gearhead import (
-    DRIVING,
     Gearset,
-    balance,
     compliances,
     inertias,
     lost_motion,
     planet_play,
 )
+from gearopt.physics.planetary.willis import ENDS
 from gearopt.physics.stiffness import locked_frequency
 
 SPRINGS = ("meshes of sun and planets", "meshes of planets and ring", "pins of the planets")
@@ -53,17 +52,18 @@ def described(
 ) -> GearheadDesign:
     """The stage as a result has it; bodies: as of `inertias`; lost: of `lost_motions`."""
     mass, parts = inertias(gears, *bodies)
-    flow = None if friction is None else balance(gears, friction)
+    flow = gears.flow(friction or 0.0)
+    lossy = friction is not None
     return GearheadDesign(
         planets=gears.planets,
         teeth=f"{gears.sun.teeth:.0f}, {gears.planet.teeth:.0f}, {-gears.ring.teeth:.0f}",
-        ratio=float(1 / abs(gears.speeds[DRIVING[gears.held]])),
+        ratio=float(1 / abs(flow.speeds[ENDS[gears.held][1]])),
         centre_distance_mm=float(gears.distance),
         ring_outside_diameter_mm=float(-gears.ring.outside),
         mass_kg=1e3 * float(mass),
         inertia_kg_m2=KG_M2 * float(sum(parts.values())),
         planets_inertia_kg_m2=KG_M2 * float(parts["planets"]),
-        efficiency=None if flow is None else float(flow.efficiency),
-        rolling_power=None if flow is None else max(float(m.rolling) for m in flow.meshes),
+        efficiency=float(flow.efficiency) if lossy else None,
+        rolling_power=max(float(m.rolling) for m in flow.meshes) if lossy else None,
         **lost,
     )

@@ -6,6 +6,7 @@ with z_p chi = z_s phi at the sun and z_p chi = -z_r phi at a ring, but for whol
 Teeth may be arrays of whole numbers; those of rings are positive here.
 """
 
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,11 @@ def spread(count: Any, planets: int) -> Any:
     """
     k = np.arange(planets)
     return (2 * k * np.asarray(count)[..., None] + planets) // (2 * planets)
+
+
+def turns(count: int, planets: int) -> list[Fraction]:
+    """The places of `spread` as parts of a turn."""
+    return [Fraction(place, count) for place in spread(count, planets).tolist()]
 
 
 def least_spacing(count: Any, planets: int) -> Any:

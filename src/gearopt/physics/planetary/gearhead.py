@@ -17,10 +17,7 @@ from gearopt.physics.gears import Gear, GearPair, disc_inertia, disc_mass
 from gearopt.physics.geometry.tooth import circumferential_backlash
 from gearopt.physics.iso6336.stiffness import mesh_stiffness, single_stiffness
 from gearopt.physics.mesh_loss import tooth_loss_factor
-from gearopt.physics.planetary.kinematics import Balance, Mesh, balances, speeds
-
-DRIVEN = {"ring": "sun", "carrier": "sun", "sun": "ring"}  # by the motor; by what is held
-DRIVING = {"ring": "carrier", "carrier": "ring", "sun": "carrier"}  # the load
+from gearopt.physics.planetary.willis import Flow, flow, simple_set
 
 
 @dataclass(frozen=True)
@@ -39,21 +36,12 @@ class Gearset:
         a = self.distance + outwards
         return GearPair(self.sun, self.planet, a), GearPair(self.planet, self.ring, -a)
 
-    def meshes(self, friction: float = 0.0) -> tuple[Mesh, Mesh]:
-        """Both meshes, which lose mu H_V of their rolling power."""
-        sun, planet, ring = (round(float(g.teeth)) for g in (self.sun, self.planet, self.ring))
+    def flow(self, friction: float = 0.0) -> Flow:
+        """Speeds of members at a speed 1 of the motor, and torques; meshes lose friction mu H_V."""
+        sun, planet, ring = (round(abs(float(g.teeth))) for g in (self.sun, self.planet, self.ring))
         lost = (friction and friction * float(tooth_loss_factor(p)) for p in self.pairs())
         outer, inner = (1 - Fraction(part) for part in lost)
-        return (
-            Mesh("sun", "planet", "carrier", sun, planet, outer),
-            Mesh("planet", "ring", "carrier", planet, ring, inner),
-        )
-
-    @property
-    def speeds(self) -> dict[str, Fraction]:
-        """Speeds of all members at a speed 1 of the motor."""
-        given = {DRIVEN[self.held]: Fraction(1), self.held: Fraction(0)}
-        return speeds(self.meshes(), given)
+        return flow(simple_set(self.held), [(sun, planet, planet, ring)], [(outer, inner)])
 
     @property
     def lever(self) -> Any:
@@ -72,13 +60,6 @@ class Gearset:
         return np.cos(first) + np.cos(second), np.sqrt(2.0 + 2.0 * np.cos(first + second))
 
 
-def balance(gears: Gearset, friction: float) -> Balance:
-    """Torques and rolling power while the motor drives; friction mu of the teeth."""
-    ends = DRIVEN[gears.held], DRIVING[gears.held], (gears.held,)
-    (flow,) = balances(gears.meshes(friction), gears.speeds, *ends)
-    return flow
-
-
 def inertias(
     gears: Gearset, density: Any, bores: tuple[Any, Any] = (0.0, 0.0), carrier: Any = 0.0
 ) -> tuple[Any, dict[str, Any]]:
@@ -87,11 +68,11 @@ def inertias(
     Planets turn about their axes and go round with the carrier: N (J n_p^2 + m a^2 n_c^2), n in
     speeds of the motor. density [t/mm3]; bores of sun and planets [mm]; carrier: its inertia.
     """
-    n = {name: float(speed) for name, speed in gears.speeds.items()}
+    n = {name: float(speed) for name, speed in gears.flow().speeds.items()}
     discs = [(g, g.width, bore) for g, bore in zip((gears.sun, gears.planet), bores, strict=True)]
     sun, planet = (g.inertia(density) - disc_inertia(density, *hole) for g, *hole in discs)
     core, mass = (g.mass(density) - disc_mass(density, *hole) for g, *hole in discs)
-    around = planet * n["planet"] ** 2 + mass * (gears.distance * n["carrier"]) ** 2
+    around = planet * n["planets"] ** 2 + mass * (gears.distance * n["carrier"]) ** 2
     return core + gears.planets * mass + gears.ring.mass(density), {
         "sun": sun * n["sun"] ** 2,
         "planets": gears.planets * around,

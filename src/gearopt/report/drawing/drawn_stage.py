@@ -7,13 +7,9 @@ from gearopt.formulations.drive.layout.layout_design import GearDesign, ShaftDes
 from gearopt.frozen import dataclass
 from gearopt.physics.gears import MEMBERS
 from gearopt.physics.planetary import assembly
+from gearopt.physics.planetary.willis import ENDS
 from gearopt.report.drawing.bodies import Plate, RingDesign
 
-ENDS = {  # members that a pair's pinion and wheel stand for, by the one that is held
-    "ring": ("sun", "carrier"),
-    "sun": ("ring", "carrier"),
-    "carrier": ("sun", "ring"),
-}
 PLATE = (2.0, 7.0)  # px from the gears to a plate, and to its other face
 PIN = 0.35  # of a planet's reference diameter: a pin as it is drawn, but in a bore
 PINS = 100  # numbers of pins of a stage
@@ -85,8 +81,7 @@ class DrawnStage:
     def turns(self) -> list[float]:
         """Angles of the planets [rad], as equal as teeth allow."""
         whole = round(self.pinion_teeth + (self.ring_teeth or 0.0))
-        where = assembly.spread(whole, self.planets or 1).tolist()
-        return [2.0 * math.pi * place / whole for place in where]
+        return [2.0 * math.pi * float(turn) for turn in assembly.turns(whole, self.planets or 1)]
 
     def gears(self, k: int, middle: float, idlers: Sequence[int]) -> list[GearDesign]:
         """Gears of the stage of number k, about a middle along the shafts [mm]; idlers: shafts."""

@@ -4,10 +4,11 @@ import math
 from dataclasses import replace
 from fractions import Fraction
 
-from gearopt.formulations.epicyclic.design import PLANETS, EpicyclicDesign
+from gearopt.formulations.epicyclic.design import EpicyclicDesign
 from gearopt.formulations.epicyclic.request import COUPLED, SETS, SIMPLE
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
+from gearopt.physics.planetary.willis import PLANETS
 from gearopt.report.drawing.planetary_view import GearSet, Wheel, animation, outline
 from gearopt.report.kinds import generic
 from gearopt.report.measures import METRIC, Measures

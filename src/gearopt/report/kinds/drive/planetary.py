@@ -1,21 +1,22 @@
 """Stages with planets or a ring: as they turn, in space, places and loads of planets, powers."""
 
 import math
+from collections.abc import Iterator
 from fractions import Fraction
 from typing import Annotated, Any
 
 import numpy as np
 
 from gearopt.formulations.drive.design import StageDesign, drive_design
-from gearopt.formulations.epicyclic.design import Place, place_at
+from gearopt.formulations.epicyclic.design import Place, placed
 from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import Shown
 from gearopt.physics.gears import Gear
 from gearopt.physics.planetary import assembly
-from gearopt.physics.planetary.kinematics import Balance, Mesh, balances, speeds
+from gearopt.physics.planetary.willis import Use, simple_set
+from gearopt.physics.planetary.willis import flow as train_flow
 from gearopt.report.design_tables import types
-from gearopt.report.drawing.drawn_stage import ENDS
 from gearopt.report.drawing.planetary_view import GearSet, Wheel, animation
 from gearopt.report.drawing.player import Animation
 from gearopt.report.drawing.solid import outline
@@ -41,22 +42,6 @@ PINS = (
     "working pressure angle, as the mean of all planets, without K_γ; positive radial forces "
     "point outwards. Centrifugal forces are left out."
 )
-
-
-@dataclass(frozen=True)
-class Flow:
-    """What turns how fast in a stage, and what flows: over the speed and torque of its input.
-
-    speed [rad/s] and torque [N m] of the input.
-    """
-
-    source: str
-    sink: str
-    held: str
-    turning: dict[str, Fraction]
-    balance: Balance
-    speed: float
-    torque: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,72 +74,64 @@ def _teeth(stage: StageDesign) -> tuple[int, int, int]:
     return z_s, z_p, z_r
 
 
-def flow(stage: StageDesign) -> Flow:
-    """Speeds and torques of a planetary stage, without losses."""
+def _pinion_speed(stage: StageDesign) -> float:
+    """Speed [rad/s] of the pinion, of a sun against the carrier."""
+    return 2e3 * stage.pitch_line_velocity_m_per_s / stage.pinion_diameter_mm
+
+
+def flow(stage: StageDesign) -> tuple[Use, dict[str, float], dict[str, float]]:
+    """Who does what in a planetary stage, speeds [rad/s] and torques [N m], without losses."""
     z_s, z_p, z_r = _teeth(stage)
-    known = [Mesh("sun", "planets", "carrier", z_s, z_p)]
-    known.append(Mesh("planets", "ring", "carrier", z_p, -z_r))
-    ends = ENDS[stage.fixed]
-    source, sink = ends if stage.driver == "pinion" else ends[::-1]
-    turning = speeds(known, {source: Fraction(1), stage.fixed: Fraction(0)})
-    balance = balances(known, turning, source, sink, (stage.fixed,))[0]
-    rolls = 2e3 * stage.pitch_line_velocity_m_per_s / stage.pinion_diameter_mm
-    speed = rolls / abs(float(turning["sun"] - turning["carrier"]))
-    torque = stage.pinion_torque_Nm / abs(float(balance.torques["sun"]))
-    return Flow(source, sink, stage.fixed, turning, balance, speed, torque)
+    use = simple_set(stage.fixed, stage.driver != "pinion")
+    known = train_flow(use, [(z_s, z_p, z_p, z_r)], [(Fraction(1), Fraction(1))])
+    slip = known.speeds["sun"] - known.speeds["carrier"]
+    speed = _pinion_speed(stage) / abs(float(slip))
+    torque = stage.pinion_torque_Nm / abs(float(known.torques["sun"]))
+    speeds = {name: speed * float(n) for name, n in known.speeds.items()}
+    return use, speeds, {name: torque * float(t) for name, t in known.torques.items()}
 
 
 def members(stage: StageDesign, number: int) -> list[Member]:
     """Members of a stage (its number from 1) under load, of pairs pinion and wheel, or ring."""
-    if stage.type != "planetary":
-        return _pair(stage, number)
-    it, (z_s, _, z_r) = flow(stage), _teeth(stage)
-    uses = {it.source: "input", it.sink: "output", it.held: "fixed"}
-    rows = []
+    return [
+        Member(
+            stage=number,
+            member=name,
+            use=use,
+            teeth=teeth,
+            speed_rpm=30.0 / math.pi * speed,
+            torque_Nm=torque,
+            power_kW=1e-3 * torque * speed + 0.0,
+        )
+        for name, use, teeth, speed, torque in (
+            _of_set(stage) if stage.type == "planetary" else _of_pair(stage)
+        )
+    ]
+
+
+def _of_set(stage: StageDesign) -> Iterator[tuple[str, str, int | None, float, float]]:
+    """Yield members with what they do, teeth, speed [rad/s] and torque [N m]."""
+    (use, speeds, torques), (z_s, _, z_r) = flow(stage), _teeth(stage)
     for name, teeth in (("sun", z_s), ("ring", z_r), ("carrier", None)):
-        speed = it.speed * float(it.turning[name])
-        torque = it.torque * float(it.balance.torques[name])
-        rows.append(_member(number, name, uses[name], teeth, speed, torque))
-    return rows
+        yield name, use.roles[name], teeth, speeds[name], torques[name]
 
 
-def _pair(stage: StageDesign, number: int) -> list[Member]:
-    speed = 2e3 * stage.pitch_line_velocity_m_per_s / stage.pinion_diameter_mm
-    ring = stage.type == "internal"
-    other = speed / stage.ratio * (1.0 if ring else -1.0)
-    power, rows = speed * stage.pinion_torque_Nm, []
-    drives = stage.driver == "pinion"
-    speeds_of = (speed, other) if drives else (math.copysign(speed, other), abs(other))
-    names = "pinion", "ring" if ring else "wheel"
-    teeth = round(stage.pinion_teeth), round(stage.wheel_teeth)
-    for name, z, own, first in zip(names, teeth, speeds_of, (drives, not drives), strict=True):
-        use, given = ("input", power) if first else ("output", -power)
-        rows.append(_member(number, name, use, z, own, given / own))
-    return rows
-
-
-def _member(
-    stage: int, name: str, use: str, teeth: int | None, speed: float, torque: float
-) -> Member:
-    """A row of the table; speed [rad/s], torque [N m]."""
-    return Member(
-        stage=stage,
-        member=name,
-        use=use,
-        teeth=teeth,
-        speed_rpm=30.0 / math.pi * speed,
-        torque_Nm=torque,
-        power_kW=1e-3 * torque * speed + 0.0,
-    )
+def _of_pair(stage: StageDesign) -> Iterator[tuple[str, str, int | None, float, float]]:
+    """Yield what `_of_set` does of a pair of gears."""
+    speed, ring = _pinion_speed(stage), stage.type == "internal"
+    other, drives = speed / stage.ratio * (1.0 if ring else -1.0), stage.driver == "pinion"
+    power = speed * stage.pinion_torque_Nm
+    speeds = (speed, other) if drives else (math.copysign(speed, other), abs(other))
+    rows = ("pinion", stage.pinion_teeth), ("ring" if ring else "wheel", stage.wheel_teeth)
+    for (name, z), n, first in zip(rows, speeds, (drives, not drives), strict=True):
+        yield name, "input" if first else "output", round(z), n, (power if first else -power) / n
 
 
 def planets(stage: StageDesign, number: int = 1) -> list[Place]:
     """Places of the planets of a stage (its number from 1), as equal as teeth allow."""
-    z_s, z_p, z_r = _teeth(stage)
-    whole = int(assembly.places(z_s, z_p, z_p, z_r))
-    where = assembly.spread(whole, stage.planets or 1).tolist()
-    turns = [Fraction(place, whole) for place in where]
-    return [place_at(f"stage {number}", k, at, z_s, z_r) for k, at in enumerate(turns, 1)]
+    z_s, _, z_r = _teeth(stage)
+    turns = assembly.turns(z_s + z_r, stage.planets or 1)
+    return [*placed(f"stage {number}", turns, z_s, z_r)]
 
 
 def planet_load(stage: StageDesign) -> PlanetLoad:
@@ -162,30 +139,27 @@ def planet_load(stage: StageDesign) -> PlanetLoad:
 
     Both meshes have the force T_s/(N r_bs) along their lines of action.
     """
-    it, n, a = flow(stage), stage.planets or 1, stage.centre_distance_mm
-    torques = {name: 1e3 * it.torque * float(t) for name, t in it.balance.torques.items()}
+    n, a, (z_s, z_p, z_r) = stage.planets or 1, stage.centre_distance_mm, _teeth(stage)
+    _, speeds, torques = flow(stage)
     outer = stage.pair
     base = 0.5 * float(outer.pinion.base_diameter)
-    z_s, z_p, z_r = _teeth(stage)
     inner = math.acos(min(base / z_s * (z_r - z_p) / a, 1.0))
-    along = abs(torques["sun"]) / (n * base)
-    rolls = it.speed * float(it.turning["sun"] - it.turning["carrier"])
-    own = it.speed * float(it.turning["planets"] - it.turning["carrier"])
-    angles = [360.0, *(360.0 + at.angle_deg for at in planets(stage)[1:]), 720.0]
-    closest = min(end - start for start, end in zip(angles, angles[1:], strict=False))
-    apart = 2.0 * a * math.sin(math.radians(0.5 * closest)) - stage.wheel_tip_diameter_mm
+    along = 1e3 * abs(torques["sun"]) / (n * base)
+    spacing = float(assembly.least_spacing(z_s + z_r, n))
+    apart = float(assembly.neighbour_distance(a, spacing)) - stage.wheel_tip_diameter_mm
     return PlanetLoad(
-        tangential_N=abs(torques["carrier"]) / (n * a),
+        tangential_N=1e3 * abs(torques["carrier"]) / (n * a),
         radial_N=along * (math.sin(float(outer.working_angle)) - math.sin(inner)),
-        speed_rpm=30.0 / math.pi * own,
+        speed_rpm=30.0 / math.pi * (speeds["planets"] - speeds["carrier"]),
         gap_mm=apart if n > 1 else None,
-        rolling_kW=1e-6 * abs(torques["sun"] * rolls),
+        rolling_kW=1e-3 * abs(torques["sun"] * (speeds["sun"] - speeds["carrier"])),
     )
 
 
 def gear_set(stage: StageDesign, gears: tuple[Gear, Gear, Gear]) -> GearSet:
     """A stage as it is seen along its axis, in mm."""
-    n, turning = stage.planets or 1, flow(stage).turning
+    n, (use, speeds, _) = stage.planets or 1, flow(stage)
+    turning = {name: speed / speeds[use.source] for name, speed in speeds.items()}
     teeth = [abs(round(gear.teeth)) for gear in gears]
     points = 2 * (teeth[0] + n * teeth[1] + teeth[2])
     flank = next((flank for flank in FLANKS if flank * points < POINTS), FLANKS[-1])
@@ -194,7 +168,7 @@ def gear_set(stage: StageDesign, gears: tuple[Gear, Gear, Gear]) -> GearSet:
     def wheel(k: int, name: str, speed: str) -> Wheel:
         angle, r = np.array(outline(gears[k], flank, 0.0)).T
         shape = np.stack((r * np.cos(angle), r * np.sin(angle)), axis=1)
-        return Wheel(name, teeth[k], float(turning[speed]), shape, rims[k])
+        return Wheel(name, teeth[k], turning[speed], shape, rims[k])
 
     return GearSet(
         wheel(0, "sun", "sun"),
@@ -202,7 +176,7 @@ def gear_set(stage: StageDesign, gears: tuple[Gear, Gear, Gear]) -> GearSet:
         wheel(2, "ring", "ring"),
         teeth[1],
         teeth[1],
-        float(turning["carrier"]),
+        turning["carrier"],
         [math.radians(at.angle_deg) for at in planets(stage)],
         stage.centre_distance_mm,
     )
@@ -231,10 +205,10 @@ def turning(result: Result, measures: Measures) -> Section | None:
                 "tool cuts."
             )
             continue
-        it, seen = flow(stage), gear_set(stage, gears)
-        both = ("input", it.source), ("output", it.sink)
-        ends = [(f"{name} ({use})", float(it.turning[name])) for use, name in both]
-        held = f"The {it.held} of stage {k} is held."
+        (use, speeds, _), seen = flow(stage), gear_set(stage, gears)
+        ratio = speeds[use.sink] / speeds[use.source]
+        ends = [(f"{use.source} (input)", 1.0), (f"{use.sink} (output)", ratio)]
+        held = f"The {stage.fixed} of stage {k} is held."
         turns.append(animation([seen], f"stage {k} as it turns", ends, f"{TRUE} {held}"))
         figures.append(figure(stage, k, seen, gears, measures))
     if not turns and not words:

@@ -9,7 +9,8 @@ from pydantic import Field, model_validator
 from gearopt.formulations.drive.planetary import Cutting, Planets
 from gearopt.formulations.servo.gearhead import described, lost_motions, stiffness_of
 from gearopt.formulations.servo.servo_design import GearheadDesign, StiffnessDesign
-from gearopt.physics.planetary.gearhead import DRIVING, Gearset, planet_play
+from gearopt.physics.planetary.gearhead import Gearset, planet_play
+from gearopt.physics.planetary.willis import ENDS
 from gearopt.scenes.reading.allowances import allowances
 from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse, whole
 from gearopt.scenes.servo.tables.mesh import opening
@@ -39,7 +40,7 @@ class Planetary(Table):
     planet_teeth: Teeth = Field(description="Number of teeth of a planet")
     ring_teeth: Teeth = Field(description="Number of teeth of the ring")
     planets: Annotated[int, whole(3, 1, 12)] = _key("Number of planets, equally spaced", 3)
-    fixed: Annotated[str, choice(*DRIVING)] = _key(
+    fixed: Annotated[str, choice(*ENDS)] = _key(
         "Member that stands still: ring (sun drives carrier, 1 + z_r/z_s), carrier (sun drives "
         "ring, z_r/z_s) or sun (ring drives carrier, 1 + z_s/z_r)",
         "ring",
