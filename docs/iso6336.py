@@ -334,11 +334,10 @@ supports, planets whose rim is thin on a bearing but for Y_B by s_R/h_t; interfe
 `geometry.internal`, not by a rating. Each mesh has its own K_v;
 the printed reports take the larger of both for both.
 
-`gearopt.physics.planetary.loads` makes the operations of both meshes from that of the sun against
-the carrier: F_t is T/(N r) without K_gamma, load cycles are N a relative turn for sun and ring, one
-a flank for a planet, whose `reversed_load` gives Y_M = 0.7. K_gamma is given (`given={"K_gamma":
-1.1}`; else it is 1 and *unverified*), or follows from the number of planets by a rule that is named
-(`mesh_load_factor`):
+The operation of a mesh is that of one planet against the carrier: F_t is T/(N r) without K_gamma,
+load cycles (`contacts`) are N a relative turn for sun and ring, one a flank for a planet, whose
+`reversed_load` gives Y_M = 0.7. K_gamma is given (`given={"K_gamma": 1.1}`; else it is 1 and
+*unverified*), or follows from the number of planets by a rule that is named (`mesh_load_factor`):
 
 """
 SOURCES = {
@@ -348,14 +347,17 @@ SOURCES = {
 }
 EXAMPLE = """
 ```python
+from dataclasses import replace
+
 from gearopt.physics.gears import Cutter
-from gearopt.physics.planetary.loads import mesh_load_factor, with_ring
+from gearopt.physics.planetary.loads import mesh_load_factor
 
 ring = GearPair.internal(3.0, 33, -87, 30.0, cutter=Cutter(25, tip_radius=0.3))
-load = with_ring(operation, planets=3, ratio=33 / 21, held=True)  # of the sun against the carrier
+speed, cycles = operation.pinion_speed * 21 / 33, (1.0, 3.0)  # of the sun, against the carrier
+load = replace(operation, power=operation.power / 3, pinion_speed=speed, contacts=cycles)
 planet = Material("Eh", "MQ", reversed_load=True)
 given = {"K_gamma": mesh_load_factor(3, "wind")}
-rating = rate(ring, load.operation, (planet, steel), Practice(meshes=load.meshes), given)
+rating = rate(ring, load, (planet, steel), Practice(meshes=(1.0, 0.0)), given)  # held: 0
 print([round(s, 2) for s in rating.bending_safety + rating.contact_safety], rating.unverified)
 ```
 """

@@ -18,7 +18,7 @@ from gearopt.physics.geometry.involute import involute, involute_angle
 from gearopt.physics.iso6336.case import Practice, of_blanks
 from gearopt.physics.iso6336.materials import Material
 from gearopt.physics.iso6336.rating import rate
-from gearopt.physics.planetary.loads import mesh_load_factor, with_ring, with_sun
+from gearopt.physics.planetary.loads import mesh_load_factor
 from gearopt.physics.rating import Operation
 
 HARD = Material("Eh", "MQ")
@@ -304,21 +304,20 @@ def safe(train, way, made, teeth, width, torque):
         pair = GearPair(*(replace(gear, face_width=width) for gear in made[1:3]), -made[3])
         return _meets(pair, load, (HARD, HARD), Practice(grades=(6.0, 6.0)), {})
     g1, g2, g3, a = (*(replace(g, face_width=width) for g in made[:3]), made[3])
-    outer, inner = (
-        with_sun(load, n, way.held == "sun"),
-        with_ring(load, n, planet / sun, way.held == "ring"),
-    )
+    held_ring = 0.0 if way.held == "ring" else float(n)
+    outer = replace(load, power=load.power / n, contacts=(float(n), 1.0))
+    inner = replace(outer, pinion_speed=relative * sun / planet, contacts=(1.0, float(n)))
     g3 = replace(g3, outside_diameter=way.cutting.outside and -way.cutting.outside)
     blanks = (*way.cutting.blanks, SOLID)
     pairs = [
-        (GearPair(g1, g2, a), outer, (HARD, BENT)),
-        (GearPair(g2, g3, -a), inner, (BENT, HARD)),
+        (GearPair(g1, g2, a), outer, (-n if way.held == "sun" else n, 1.0), (HARD, BENT)),
+        (GearPair(g2, g3, -a), inner, (1.0, held_ring), (BENT, HARD)),
     ]
-    for k, (pair, mesh, steels) in enumerate(pairs):
-        bare = Practice(grades=(6.0, 6.0), meshes=mesh.meshes)
+    for k, (pair, mesh, at_once, steels) in enumerate(pairs):
+        bare = Practice(grades=(6.0, 6.0), meshes=at_once)
         practice = of_blanks(bare, pair, (blanks[k], blanks[k + 1]))
         factor = {"K_gamma": mesh_load_factor(n, "wind")}
-        if not _meets(pair, mesh.operation, steels, practice, factor):
+        if not _meets(pair, mesh, steels, practice, factor):
             return False
     return True
 
