@@ -29,7 +29,7 @@ from gearopt.scenes.reading.fields import (
     whole,
     words,
 )
-from gearopt.scenes.reading.lists import mended, several, span
+from gearopt.scenes.reading.lists import pair, several, span
 
 MIN_TEETH, MAX_TEETH, MAX_PLANETS, MAX_SHIFTED = 4, 600, 12, 6
 SETS = {  # of every arrangement: sun, ring, carrier
@@ -42,38 +42,9 @@ MEMBER = choice(*dict.fromkeys(n for sets in SETS.values() for names in sets for
 Range = Annotated[
     tuple[int, int] | None, span(whole(20, MIN_TEETH, MAX_TEETH), [17, 60], single=True)
 ]
+JOINED = pair(MEMBER, "two members that turn together", ["ring1", "carrier2"])
 ETA = number(0.99, Fraction(1, 2), 1)
 SAMPLES = ([(17, 60), (23, 71)], [(31, 79), (19, 97)])  # teeth by which a coupling is tried
-
-
-def _fixed() -> Reads:
-    """Read one member or a list of them."""
-    listed = several(MEMBER, ["ring1", "ring2"])
-
-    def read(value: Any, example: Any) -> tuple[str, ...]:
-        members: tuple[str, ...] = listed.reader(
-            [value] if isinstance(value, str) else value, listed.example
-        )
-        return members
-
-    return Reads(read, "ring", {"anyOf": [MEMBER.schema, listed.schema]})
-
-
-def _joined() -> Reads:
-    """Read two members that turn together."""
-
-    def read(value: Any, example: Any) -> tuple[str, str]:
-        if isinstance(value, tuple):
-            return value[0], value[1]
-        if not isinstance(value, list) or len(value) != 2:
-            raise refuse("is not two members that turn together", example)
-        right, rule = mended(MEMBER, value)
-        if rule:
-            raise refuse(f"has a member that {rule}", None if None in right else right)
-        return value[0], value[1]
-
-    two = {"type": "array", "items": MEMBER.schema, "minItems": 2, "maxItems": 2}
-    return Reads(read, ["ring1", "carrier2"], two)
 
 
 def _signed_ratio() -> Reads:
@@ -81,12 +52,10 @@ def _signed_ratio() -> Reads:
     item = speed_ratio(5, 0)
 
     def read(value: Any, example: Any) -> Fraction:
-        if isinstance(value, str) and value.strip().startswith("-"):
-            return -Fraction(item.reader(value.strip()[1:], example))
         if isinstance(value, Fraction):
             return value
-        if isinstance(value, int | Decimal) and Decimal(value).is_finite() and value < 0:
-            return -Fraction(item.reader(-value, example))
+        if isinstance(value, str | int | Decimal) and (text := str(value).strip())[:1] == "-":
+            return -Fraction(item.reader(text[1:] if isinstance(value, str) else -value, example))
         if value == 0 and not isinstance(value, bool):
             raise refuse("is 0: the input would stand still")
         return Fraction(item.reader(value, example))
@@ -115,10 +84,10 @@ class Train(Table):
         'fraction "-80/21"; below 0 where they turn against each other. Without it teeth are '
         "given, or chosen by the objective alone",
     )
-    joined: Annotated[tuple[tuple[str, str], ...], several(_joined(), [["ring1", "carrier2"]])] = (
+    joined: Annotated[tuple[tuple[str, str], ...], several(JOINED, [["ring1", "carrier2"]])] = (
         Field((), description="Members of coupled sets that turn together, in pairs")
     )
-    fixed: Annotated[tuple[str, ...], _fixed()] = Field(
+    fixed: Annotated[tuple[str, ...], several(MEMBER, "ring", single=True)] = Field(
         description="Member, or members, that stand still"
     )
     input: Annotated[str, MEMBER] = Field(description="Member that is driven")

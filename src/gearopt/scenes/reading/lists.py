@@ -209,23 +209,23 @@ def one_or_several(item: Reads) -> Reads:
     return Reads(read, item.example, {"anyOf": [item.schema, many.schema]})
 
 
-def pair(item: Reads) -> Reads:
-    """Read a place [x, y] of two items."""
+def pair(item: Reads, what: str = "a place [x, y]", example: Any = None) -> Reads:
+    """Read two items."""
 
     def read(value: Any, example: Any) -> tuple[Any, Any]:
         if isinstance(value, tuple):
             return value[0], value[1]
         if not isinstance(value, list) or len(value) < 2:
-            raise refuse("is not a place [x, y]")
+            raise refuse(f"is not {what}", example)
         right, rule = mended(item, value[:2])
         if len(value) > 2:
-            raise refuse("is not a place [x, y]", None if None in right else right)
+            raise refuse(f"is not {what}", None if None in right else right)
         if rule:
             raise refuse(f"has a part that {rule}", None if None in right else right)
         return item.reader(value[0], item.example), item.reader(value[1], item.example)
 
     schema = {"type": "array", "items": item.schema, "minItems": 2, "maxItems": 2}
-    return Reads(read, [item.example] * 2, schema)
+    return Reads(read, example or [item.example] * 2, schema)
 
 
 def word_or(names: tuple[str, ...], item: Reads) -> Reads:
