@@ -82,76 +82,44 @@ class Cutter:
 
 
 def is_internal(teeth: Any) -> bool:
-    """Return whether a number of teeth, or any of an array, is that of a ring: negative."""
+    """Whether a number of teeth, or any of an array, is that of a ring: negative."""
     if isinstance(teeth, int | float | np.number):
         return bool(teeth < 0)
     return isinstance(teeth, np.ndarray) and teeth.dtype.kind != "O" and bool((teeth < 0).any())
 
 
 def signed(value: Any, like: Any) -> Any:
-    """Return a value times the sign of another number, teeth or a diameter; of symbols: +."""
+    """A value times the sign of another number, teeth or a diameter; of symbols: +."""
     if not is_internal(like):
         return value
     return np.where(like < 0, -value, value)[()]
 
 
 def disc_mass(density: Any, length: Any, diameter: Any) -> Any:
-    """Return the mass (pi/4) rho b d^2 [t] of a solid cylinder.
-
-    density rho [t/mm3]; length b, diameter d [mm] >= 0.
-    """
+    """Mass (pi/4) rho b d^2 [t] of a solid cylinder; rho [t/mm3], b, d [mm]."""
     return math.pi / 4.0 * density * length * diameter**2
 
 
 def disc_inertia(density: Any, length: Any, diameter: Any) -> Any:
-    """Return the moment of inertia (pi/32) rho b d^4 [t mm2] of a solid cylinder about its axis.
-
-    density rho [t/mm3]; length b, diameter d [mm] >= 0.
-    """
+    """Inertia (pi/32) rho b d^4 [t mm2] of a solid cylinder about its axis; as `disc_mass`."""
     return math.pi / 32.0 * density * length * diameter**4
 
 
 def reference_diameter(module: Any, teeth: Any, helix_angle: Any = 0.0) -> Any:
-    """Return the reference (pitch) diameter d = m_n z / cos(beta) [mm].
+    """Reference diameter d = m_n z/cos(beta) [mm] (ISO 21771:2007); below 0 of a ring.
 
-    module [mm] > 0, the normal one, or the transverse one m_n/cos(beta) without a helix angle;
-    teeth < 0 of a ring; helix_angle [rad], |beta| < pi/2.
-    Source: ISO 21771:2007, reference diameter.
+    module [mm]: m_n, or the transverse one without a helix angle beta [rad].
     """
     return module * teeth / np.cos(helix_angle)
 
 
 def transverse_pressure_angle(pressure_angle: Any, helix_angle: Any) -> Any:
-    """Return the transverse pressure angle alpha_t = arctan(tan(alpha_n)/cos(beta)) [rad].
-
-    pressure_angle alpha_n, the normal one, from 0 to below pi/2; helix_angle beta, |beta| < pi/2.
-    Source: ISO 21771:2007, transverse pressure angle.
-    """
+    """Transverse pressure angle alpha_t = arctan(tan(alpha_n)/cos(beta)) [rad], ISO 21771:2007."""
     return np.arctan(np.tan(pressure_angle) / np.cos(helix_angle))
 
 
-def transverse_contact_ratio(
-    tip_diameters: tuple[Any, Any],
-    base_diameters: tuple[Any, Any],
-    centres: Any,
-    working_angle: Any,
-    base_pitch: Any,
-) -> Any:
-    """Return the transverse contact ratio eps_alpha = g_alpha/p_bt: mean tooth pairs in contact.
-
-    g_alpha = (sqrt(d_a1^2 - d_b1^2) + z2/|z2| sqrt(d_a2^2 - d_b2^2))/2 - a sin(alpha_wt). Tip
-    diameters |d_a| > base diameters |d_b| of pinion and wheel; centres: their distance a;
-    base_pitch p_bt > 0, the transverse one, all [mm]; working_angle alpha_wt, transverse [rad].
-    Valid without undercut (see `geometry.fillet.is_undercut`), else too large.
-    Source: ISO 6336-1:2006 and ISO 21771:2007, transverse contact ratio.
-    """
-    (a1, a2), (b1, b2) = tip_diameters, base_diameters
-    reach = 0.5 * (np.sqrt(a1**2 - b1**2) + signed(np.sqrt(a2**2 - b2**2), b2))
-    return (reach - centres * np.sin(working_angle)) / base_pitch
-
-
 def _none(value: Any) -> bool:
-    """Return whether a shift is the number 0, of which nothing needs to be solved."""
+    """Whether a shift is the number 0, of which nothing needs to be solved."""
     return isinstance(value, int | float) and value == 0
 
 
@@ -244,7 +212,7 @@ class Gear:
         return self.reference_diameter * np.cos(self.transverse_pressure_angle)
 
     def cutting(self, shift: Any) -> tuple[Any, Any]:
-        """Return alpha_w0 [rad] and a_0 [mm] of gear and cutter at a profile shift x or x_E.
+        """Angle alpha_w0 [rad] and a_0 [mm] of gear and cutter at a profile shift x or x_E.
 
         Their transverse working pressure angle and centre distance, a_0 < 0 of a ring.
         """
@@ -264,11 +232,6 @@ class Gear:
         return reference + 2.0 * height * self.normal_module
 
     @property
-    def tip_pitch(self) -> Any:
-        """Pitch pi d_a/z on the tip circle [mm]."""
-        return np.pi * self.tip_diameter / self.teeth
-
-    @property
     def outside(self) -> Any:
         """Outside diameter [mm] of a ring, negative."""
         if self.outside_diameter is not None:
@@ -281,30 +244,26 @@ class Gear:
 
         Of a ring that of the tube between this cylinder and its outside.
         """
-        if is_internal(self.teeth):
-            return 0.25 * np.pi * self.width * (self.outside**2 - self.body**2)
-        return 0.25 * np.pi * self.width * self.body**2
+        square = self.outside**2 - self.body**2 if is_internal(self.teeth) else self.body**2
+        return 0.25 * np.pi * self.width * square
 
     def mass(self, density: Any) -> Any:
-        """Return the mass [t] as a solid cylinder or tube, see `volume`; density [t/mm3]."""
+        """Mass [t] as a solid cylinder or tube, see `volume`; density [t/mm3]."""
         if is_internal(self.teeth):
             return density * self.volume
         return disc_mass(density, self.width, self.body)
 
     def inertia(self, density: Any) -> Any:
-        """Return the moment of inertia [t mm2] as a solid cylinder or tube, see `volume`."""
+        """Moment of inertia [t mm2] as a solid cylinder or tube, see `volume`."""
         inner = disc_inertia(density, self.width, self.body)
         if is_internal(self.teeth):
             return disc_inertia(density, self.width, self.outside) - inner
         return inner
 
 
-def _gear(
-    teeth: Any, shift: Any, module: Any, face_width: Any, helix_angle: Any, rack: Rack
-) -> Gear:
-    """Return the gear of a normal module, teeth and a profile shift."""
+def _gear(module: Any, width: Any, helix_angle: Any, teeth: Any, rack: Rack, shift: Any) -> Gear:
     diameter = reference_diameter(module, teeth, helix_angle)
-    return Gear(module, teeth, diameter, face_width, helix_angle, rack, shift)
+    return Gear(module, teeth, diameter, width, helix_angle, rack, shift)
 
 
 @dataclass(frozen=True)
@@ -332,16 +291,12 @@ class GearPair:
         profile_shifts: tuple[Any, Any] = (0.0, 0.0),
         working_distance: Any = None,
     ) -> "GearPair":
-        """Return the pair of a normal module [mm], numbers of teeth and a face width [mm].
-
-        profile_shifts x1, x2 in normal modules; working_distance [mm] as in the class. ValueError
-        for internal gears, of negative numbers of teeth: see `internal`.
-        """
+        """The pair of a normal module, numbers of teeth above 0 and a face width; lengths in mm."""
         _external(pinion_teeth)
         _external(wheel_teeth)
-        shared = normal_module, face_width, helix_angle, rack
-        rows = zip((pinion_teeth, wheel_teeth), profile_shifts, strict=True)
-        pinion, wheel = (_gear(teeth, shift, *shared) for teeth, shift in rows)
+        shared = normal_module, face_width, helix_angle
+        pinion = _gear(*shared, pinion_teeth, rack, profile_shifts[0])
+        wheel = _gear(*shared, wheel_teeth, rack, profile_shifts[1])
         return cls(pinion, wheel, working_distance)
 
     @classmethod
@@ -357,19 +312,13 @@ class GearPair:
         working_distance: Any = None,
         cutter: Cutter | None = None,
     ) -> "GearPair":
-        """Return the pair of an external pinion and a ring of negative ring_teeth z2 < -z1.
-
-        racks and profile_shifts of both; working_distance a < 0 [mm]; cutter of the ring.
-        """
+        """The pair of an external pinion and a ring of z2 < -z1 teeth; working_distance < 0."""
         if not np.all(np.less(ring_teeth, 0)):
             raise ValueError(f"{ring_teeth} teeth of a ring: write a negative number")
         _external(pinion_teeth)
-        pinion, ring = (
-            _gear(teeth, shift, normal_module, face_width, helix_angle, rack)
-            for teeth, shift, rack in zip(
-                (pinion_teeth, ring_teeth), profile_shifts, racks, strict=True
-            )
-        )
+        shared = normal_module, face_width, helix_angle
+        pinion = _gear(*shared, pinion_teeth, racks[0], profile_shifts[0])
+        ring = _gear(*shared, ring_teeth, racks[1], profile_shifts[1])
         return cls(pinion, replace(ring, cutter=cutter), working_distance)
 
     @classmethod
@@ -383,10 +332,7 @@ class GearPair:
         helix_angle: Any = 0.0,
         rack: Rack = ISO_53_A,
     ) -> "GearPair":
-        """Return the pair of a pinion and a ratio, for symbolic problems.
-
-        normal_module, pinion_diameter (reference, d1 = m_n z1/cos(beta)), face_width [mm].
-        """
+        """The pair of a pinion of d1 = m_n z1/cos(beta) and a ratio, for symbolic problems."""
         shared = face_width, helix_angle, rack
         return cls(
             Gear(normal_module, pinion_teeth, pinion_diameter, *shared),
@@ -394,7 +340,7 @@ class GearPair:
         )
 
     def of_width(self, face_width: Any) -> "GearPair":
-        """Return the pair with another face width [mm]."""
+        """The pair with another face width [mm]."""
         pinion, wheel = (replace(gear, face_width=face_width) for gear in self.gears)
         return GearPair(pinion, wheel, self.working_distance)
 
@@ -483,15 +429,16 @@ class GearPair:
 
     @property
     def transverse_contact_ratio(self) -> Any:
-        """Transverse contact ratio eps_alpha; validity as the law of this name."""
-        pinion, wheel = self.gears
-        return transverse_contact_ratio(
-            (pinion.active_tip_diameter, wheel.active_tip_diameter),
-            (pinion.base_diameter, wheel.base_diameter),
-            self.centre_distance,
-            self.working_angle,
-            self.base_pitch,
+        """Transverse contact ratio eps_alpha = g_alpha/p_bt: mean tooth pairs in contact.
+
+        g_alpha = (sqrt(d_a1^2 - d_b1^2) + z2/|z2| sqrt(d_a2^2 - d_b2^2))/2 - a sin(alpha_wt). Too
+        large with undercut (`geometry.fillet.is_undercut`). Source: ISO 6336-1, ISO 21771:2007.
+        """
+        first, second = (
+            np.sqrt(gear.active_tip_diameter**2 - gear.base_diameter**2) for gear in self.gears
         )
+        reach = 0.5 * (first + signed(second, self.wheel.base_diameter))
+        return (reach - self.centre_distance * np.sin(self.working_angle)) / self.base_pitch
 
     @property
     def overlap_ratio(self) -> Any:

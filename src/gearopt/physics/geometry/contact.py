@@ -49,9 +49,14 @@ class ContactPath:
         return self.length / self.base_pitch
 
     def radii_of_curvature(self, position: Any) -> tuple[Any, Any]:
-        """Return the transverse radii of curvature (T1 C + s, T2 C - s) of both flanks [mm]."""
+        """Transverse radii of curvature (T1 C + s, T2 C - s) of both flanks [mm]."""
         first, second = self.curvatures
         return first + position, second - position
+
+    @property
+    def root_curvatures(self) -> tuple[Any, Any]:
+        """Radii of curvature [mm] at the root end of contact of each flank."""
+        return self.radii_of_curvature(self.start)[0], self.radii_of_curvature(self.end)[1]
 
 
 def curvature_at(gear: Gear, diameter: Any, inside: Any = None) -> Any:
@@ -96,9 +101,8 @@ def active_root_diameters(pair: GearPair) -> tuple[Any, Any]:
     mate's tip passes the tangent point of the base circle (interference). Below d_Ff there is
     interference with the fillet. Source: ISO 21771:2007, start of active profile diameter.
     """
-    path, diameters = contact_path(pair), []
-    first, second = path.radii_of_curvature(path.start)[0], path.radii_of_curvature(path.end)[1]
-    for at, gear in zip((first, second), pair.gears, strict=True):
+    diameters = []
+    for at, gear in zip(contact_path(pair).root_curvatures, pair.gears, strict=True):
         diameter = np.hypot(gear.base_diameter, 2.0 * at)
         diameters.append(signed(diameter + 0.0 * np.sqrt(signed(at, gear.teeth)), gear.teeth))
     return diameters[0], diameters[1]
@@ -135,6 +139,12 @@ def specific_sliding(path: ContactPath, ratio: Any, position: Any) -> tuple[Any,
     return 1.0 - second / (ratio * first), 1.0 - ratio * first / second
 
 
+def root_sliding(path: ContactPath, pair: GearPair) -> tuple[Any, Any]:
+    """Specific sliding of both flanks at their root ends of contact."""
+    first, second = (specific_sliding(path, pair.ratio, s) for s in (path.start, path.end))
+    return first[0], second[1]
+
+
 @np.errstate(invalid="ignore", divide="ignore")
 def largest_sliding(pair: GearPair) -> Any:
     """Largest specific sliding of both flanks, without its sign, at their root ends of contact.
@@ -142,17 +152,6 @@ def largest_sliding(pair: GearPair) -> Any:
     Inf where the mate's tip passes the end of an involute.
     """
     path = contact_path(pair)
-    lowest = path.radii_of_curvature(path.start)[0], path.radii_of_curvature(path.end)[1]
-    roots = [signed(at, gear.teeth) for at, gear in zip(lowest, pair.gears, strict=True)]
-    first = specific_sliding(path, pair.ratio, path.start)[0]
-    second = specific_sliding(path, pair.ratio, path.end)[1]
-    return np.where(np.minimum(*roots) > 0.0, -np.minimum(first, second), np.inf)[()]
-
-
-def sliding_velocity(position: Any, pinion_speed: Any, ratio: Any) -> Any:
-    """Return the sliding velocity v_g = omega_1 (1 + 1/u) s [mm/s].
-
-    Positive beyond the pitch point. position s [mm]; pinion_speed omega_1 [rad/s]; ratio u.
-    Source: ISO 21771:2007.
-    """
-    return pinion_speed * (1.0 + 1.0 / ratio) * position
+    rows = zip(path.root_curvatures, pair.gears, strict=True)
+    roots = [signed(at, gear.teeth) for at, gear in rows]
+    return np.where(np.minimum(*roots) > 0.0, -np.minimum(*root_sliding(path, pair)), np.inf)[()]

@@ -79,15 +79,14 @@ def radial_clearance(mesh: Engagement) -> Any:
 
 
 def engagement(pair: GearPair) -> Engagement:
-    """Return the numbers of an internal pair, its tips as they are without chamfers."""
+    """The numbers of an internal pair, its tips as they are without chamfers."""
     first, second = pair.gears
-    play = 0.5 * circumferential_backlash(pair) / (-0.5 * pair.working_diameters[1])
     return Engagement(
         (0.5 * first.tip_diameter, -0.5 * second.tip_diameter),
         (0.5 * first.base_diameter, -0.5 * second.base_diameter),
         -pair.centre_distance,
         pair.working_angle,
-        play,
+        -circumferential_backlash(pair) / pair.working_diameters[1],
     )
 
 
@@ -103,23 +102,22 @@ def cutting(ring: Gear) -> Engagement:
 
 
 @np.errstate(invalid="ignore", divide="ignore")
-def margins(pair: GearPair, contact_ratio: float = 1.0, thickness: float = 0.0) -> dict[str, Any]:
-    """Return the margins of an internal pair by name; those of members are named 0 and 1.
+def margins(pair: GearPair) -> dict[str, Any]:
+    """Margins of an internal pair by name, as of a contact ratio of 1; of members named 0 and 1.
 
-    contact_ratio, thickness [normal modules]: the least eps_alpha and s_an that are asked for.
     Interference is measured in radii of curvature: of the involute from its end at the base circle
     to the mate's tip, of fillets from the form circle to there. With tip clearances below 0.1 the
     corners of tips may still touch fillets, by thousandths (`flaws.tip_intrusion`).
     """
     module, path, (pinion, ring) = pair.normal_module, contact_path(pair), pair.gears
-    ends = path.radii_of_curvature(path.start)[0], path.radii_of_curvature(path.end)[1]
+    ends = path.root_curvatures
     fillets = [
         end - curvature_at(gear, form_diameter(gear), 0.0)
         for end, gear in zip(ends, pair.gears, strict=True)
     ]
     mesh, clear = engagement(pair), tip_clearances(pair)
     of_mesh = {
-        "contact_ratio": (path.transverse_ratio - contact_ratio) * module,
+        "contact_ratio": (path.transverse_ratio - 1.0) * module,
         "involute_interference": ends[0],
         "trochoidal_interference": trochoidal_clearance(mesh),
         "radial_assembly": radial_clearance(mesh),
@@ -137,15 +135,14 @@ def margins(pair: GearPair, contact_ratio: float = 1.0, thickness: float = 0.0) 
     left = {name: np.where(has_mesh, each, -np.inf) for name, each in of_mesh.items()}
     left["centre_distance"] = distance
     for k, gear in enumerate(pair.gears):
-        thick = tip_thickness(gear) - thickness * module
         left[f"involute{k}"] = above[k]
-        left[f"tip_thickness{k}"] = np.where(above[k] >= 0.0, thick, -np.inf)
+        left[f"tip_thickness{k}"] = np.where(above[k] >= 0.0, tip_thickness(gear), -np.inf)
     left |= _of_cutter(ring) if ring.cutter is not None else {}
     return {name: (each / module)[()] for name, each in left.items()}
 
 
 def _distance(pair: GearPair) -> Any:
-    """Return how far the pair is from having no line of action [mm], as distance or in shifts."""
+    """How far the pair is from having no line of action [mm], as distance or in shifts."""
     angle, given = pair.pinion.transverse_pressure_angle, pair.working_distance
     if given is not None:
         return pair.reference_distance * np.cos(angle) - given
@@ -154,7 +151,7 @@ def _distance(pair: GearPair) -> Any:
 
 
 def _shifts_left(gear: Gear, teeth: Any, shifts: Any) -> Any:
-    """Return by how much [mm] a sum of shifts is less than that of a working angle of 0."""
+    """By how much [mm] a sum of shifts is less than that of a working angle of 0."""
     largest = shift_sum(0.0, teeth, gear.rack.pressure_angle, gear.transverse_pressure_angle)
     return (largest - shifts) * gear.normal_module
 
@@ -168,16 +165,13 @@ def _of_cutter(ring: Gear) -> dict[str, Any]:
     assert ring.cutter is not None
     mesh, tip = cutting(ring), cutter_tip(ring)
     reach = -curvature_at(ring, ring.tip_diameter, 0.0)
-    teeth, shifts = (
-        ring.teeth + ring.cutter.teeth,
-        ring.generating_shift + ring.cutter.profile_shift,
-    )
+    shifts = ring.generating_shift + ring.cutter.profile_shift
     of_cut = {
         "cutter_involute": reach - mesh.distance * np.sin(mesh.angle),
         "cutter_overcut": trochoidal_clearance(mesh),
         "cutter_infeed": radial_clearance(mesh),
     }
     left = {name: np.where(np.isfinite(mesh.angle), each, -np.inf) for name, each in of_cut.items()}
-    left["cutter_distance"] = _shifts_left(ring, teeth, shifts)
+    left["cutter_distance"] = _shifts_left(ring, ring.teeth + ring.cutter.teeth, shifts)
     left["cutter_tip"] = np.where(np.isfinite(tip.angle), tip.angle * tip.centre, -np.inf)
     return left

@@ -18,7 +18,7 @@ from gearopt.physics.gears import (
     reference_diameter,
     transverse_pressure_angle,
 )
-from gearopt.physics.geometry.contact import contact_path, specific_sliding
+from gearopt.physics.geometry.contact import contact_path, root_sliding
 from gearopt.physics.geometry.fillet import NEGLIGIBLE, form_diameter, undercut_depth
 from gearopt.physics.geometry.involute import (
     angle_at_distance,
@@ -309,7 +309,7 @@ class Shifting:
         """
         module, path, u = pair.normal_module, contact_path(pair), pair.ratio
         line = sum(path.curvatures)
-        lowest = path.radii_of_curvature(path.start)[0], path.radii_of_curvature(path.end)[1]
+        lowest = path.root_curvatures
         roots = (
             lowest[0] * (1.0 + u * (1.0 + self.sliding)) - line,
             lowest[1] * (u + 1.0 + self.sliding) - u * line,
@@ -345,13 +345,11 @@ class Shifting:
         of curvature and modules.
         """
         module, path = pair.normal_module, contact_path(pair)
-        first = specific_sliding(path, pair.ratio, path.start)[0]
-        second = specific_sliding(path, pair.ratio, path.end)[1]
-        lowest = path.radii_of_curvature(path.start)[0], path.radii_of_curvature(path.end)[1]
         formed = [0.5 * np.sqrt(form_diameter(g) ** 2 - g.base_diameter**2) for g in pair.gears]
-        deep = np.maximum(*(form - low for form, low in zip(formed, lowest, strict=True)))
+        rows = zip(formed, path.root_curvatures, strict=True)
+        deep = np.maximum(*(form - low for form, low in rows))
         return {
             "contact_ratio": self.contact_ratio / path.transverse_ratio,
-            "specific_sliding": -np.minimum(first, second) / self.sliding,
+            "specific_sliding": -np.minimum(*root_sliding(path, pair)) / self.sliding,
             "interference": 1.0 + deep / module,
         }
