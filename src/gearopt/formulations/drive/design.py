@@ -16,7 +16,7 @@ from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import INLINE, Shown, typed
 from gearopt.physics.blanks import SOLID, Blank
-from gearopt.physics.gears import ISO_53_A, MEMBERS, Gear, GearPair, Rack
+from gearopt.physics.gears import ISO_53_A, MEMBERS, Cutter, Gear, GearPair, Rack
 from gearopt.physics.loads import pitch_line_velocity, torque_ratios
 
 # as in a `Rack`
@@ -141,15 +141,23 @@ class StageDesign:
         gears = [self._gear(member) for member in ("pinion", "wheel")]
         distance = self.centre_distance_mm
         if self.type == "internal":
-            d, z = -self.wheel_diameter_mm, -self.wheel_teeth
-            gears[1], distance = replace(gears[1], teeth=z, reference_diameter=d), -distance
+            gears[1], distance = self._as_ring(gears[1]), -distance
         return GearPair(gears[0], gears[1], distance if shifted else None)
 
+    @property
+    def ring(self) -> Gear:
+        """The ring of a planetary stage as its tool cuts it."""
+        return self._as_ring(self._gear("ring"))
+
+    def _as_ring(self, gear: Gear) -> Gear:
+        cutter = None if self.ring_cutter is None else Cutter(*self.ring_cutter)
+        z, d = -gear.teeth, -gear.reference_diameter
+        return replace(gear, teeth=z, reference_diameter=d, cutter=cutter)
+
     def _gear(self, member: str) -> Gear:
-        values = {
-            n: getattr(self, f"{member}_{n}") for n in (*TOOL, *TEETH, "teeth", "diameter_mm")
-        }
-        own = getattr(self, f"{member}_face_width_mm") or self.face_width_mm
+        names = (*TOOL, *TEETH, "teeth", "diameter_mm")
+        values: dict[str, Any] = {n: getattr(self, f"{member}_{n}") or 0.0 for n in names}
+        width = getattr(self, f"{member}_face_width_mm", None) or self.face_width_mm
         gear = Gear(
             self.normal_module_mm,
             values["teeth"],
@@ -159,7 +167,7 @@ class StageDesign:
             Rack(math.radians(self.pressure_angle_deg), *(values[n] for n in TOOL)),
             *(values[n] for n in TEETH),
         )
-        return replace(gear, width_excess=own - self.face_width_mm)
+        return replace(gear, width_excess=width - self.face_width_mm)
 
 
 @dataclass(frozen=True, kw_only=True)
