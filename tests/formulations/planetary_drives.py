@@ -5,6 +5,7 @@ from dataclasses import replace
 from fractions import Fraction as F
 
 import numpy as np
+from mesh_loads import with_ring, with_sun
 from rated_drives import MODULES, iso, rated_drive
 
 from gearopt.formulations.drive.planetary import Cutting, InPlanetaryMesh, Planets
@@ -304,20 +305,21 @@ def safe(train, way, made, teeth, width, torque):
         pair = GearPair(*(replace(gear, face_width=width) for gear in made[1:3]), -made[3])
         return _meets(pair, load, (HARD, HARD), Practice(grades=(6.0, 6.0)), {})
     g1, g2, g3, a = (*(replace(g, face_width=width) for g in made[:3]), made[3])
-    held_ring = 0.0 if way.held == "ring" else float(n)
-    outer = replace(load, power=load.power / n, contacts=(float(n), 1.0))
-    inner = replace(outer, pinion_speed=relative * sun / planet, contacts=(1.0, float(n)))
+    outer, inner = (
+        with_sun(load, n, way.held == "sun"),
+        with_ring(load, n, planet / sun, way.held == "ring"),
+    )
     g3 = replace(g3, outside_diameter=way.cutting.outside and -way.cutting.outside)
     blanks = (*way.cutting.blanks, SOLID)
     pairs = [
-        (GearPair(g1, g2, a), outer, (-n if way.held == "sun" else n, 1.0), (HARD, BENT)),
-        (GearPair(g2, g3, -a), inner, (1.0, held_ring), (BENT, HARD)),
+        (GearPair(g1, g2, a), outer, (HARD, BENT)),
+        (GearPair(g2, g3, -a), inner, (BENT, HARD)),
     ]
-    for k, (pair, mesh, at_once, steels) in enumerate(pairs):
-        bare = Practice(grades=(6.0, 6.0), meshes=at_once)
+    for k, (pair, mesh, steels) in enumerate(pairs):
+        bare = Practice(grades=(6.0, 6.0), meshes=mesh.meshes)
         practice = of_blanks(bare, pair, (blanks[k], blanks[k + 1]))
         factor = {"K_gamma": mesh_load_factor(n, "wind")}
-        if not _meets(pair, mesh, steels, practice, factor):
+        if not _meets(pair, mesh.operation, steels, practice, factor):
             return False
     return True
 
