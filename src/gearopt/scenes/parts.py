@@ -117,9 +117,9 @@ def tooth_flaws(pairs: Iterable[GearPair], named: Sequence[Any] = ()) -> Iterato
     """Yield the flaws of the teeth of every stage, or of its meshes; named: `MeshName` of each."""
     known = set[str]()
     for k, pair in enumerate(pairs):
-        own = named[k] if named else None
-        gears = own.gears if own and own.suffix else None
-        for flaw in flaws(pair, f" of stage {own.stage if own else k + 1}", gears):
+        mesh = named[k] if named else None
+        gears = mesh.gears if mesh and mesh.suffix else None
+        for flaw in flaws(pair, f" of stage {mesh.stage if mesh else k + 1}", gears):
             if flaw.sentence not in known:  # a planet is in two meshes
                 known.add(flaw.sentence)
                 yield flaw

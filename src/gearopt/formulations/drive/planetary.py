@@ -183,8 +183,8 @@ class Cutting:
 
     def _least(self, k: int, teeth: Any) -> Any:
         """Shift of a gear, by its place: as given, or the least without undercut."""
-        if (own := self.shifts[k]) is not None:
-            return own
+        if (given := self.shifts[k]) is not None:
+            return given
         rack, (pressure, transverse) = self.racks[k], self.angles
         depth = rack.dedendum - rack.tip_radius * (1.0 - math.sin(pressure))
         depth += NO_UNDERCUT

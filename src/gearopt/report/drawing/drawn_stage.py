@@ -94,11 +94,11 @@ class DrawnStage:
             ring = self.type == "internal"
             rows = [*shafts.items()][self.idler :]
             parts = [("ring" if ring and m == "wheel" else m, m, shaft) for m, shaft in rows]
-        made = []
+        drawn = []
         for part, name, shaft in parts:
             called = "idler" if shaft in idlers else "ring" if part == "ring" else name
-            made.append(self._gear(part, f"{called} {k}", k, shaft, middle))
-        return made
+            drawn.append(self._gear(part, f"{called} {k}", k, shaft, middle))
+        return drawn
 
     def _gear(self, part: str, name: str, k: int, shaft: int, middle: float) -> GearDesign:
         """A gear; part: the first word of its keys."""
@@ -144,17 +144,18 @@ class DrawnStage:
         reach += PIN * self.wheel_diameter_mm
         ring = shafts.get("ring") if self.is_set else shafts["wheel"]
         rows = [(ring, outer)] if ring is not None and self.type != "parallel" else []
-        made = []
+        plates = []
         carrier = shafts.get("carrier", 2 * k + 1 - (ring or k))
         if self.is_set and self.carrier_width_mm and self.carrier_diameter_mm:
             for side in (-1.0, 1.0):
                 gears, end = (middle + 0.5 * side * b for b in (self.face_width_mm, self.room))
                 ends = min(gears, end), max(gears, end)
-                made.append(Plate(k, carrier, 0.5 * self.carrier_diameter_mm, *ends, sized=True))
+                radius = 0.5 * self.carrier_diameter_mm
+                plates.append(Plate(k, carrier, radius, *ends, sized=True))
         elif self.is_set:
             rows.append((carrier, reach))
         for shaft, radius in rows:
             side = 1.0 if shaft > k else -1.0
             start, end = (middle + side * (0.5 * self.face_width_mm + px / scale) for px in PLATE)
-            made.append(Plate(k, shaft, radius, min(start, end), max(start, end)))
-        return made
+            plates.append(Plate(k, shaft, radius, min(start, end), max(start, end)))
+        return plates

@@ -62,7 +62,10 @@ def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
 def of_best_types(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """The drive with the best types of its stages, each choice answered as a file of its own."""
     return best_count(
-        scene, ask, ideal_of_count, lambda one, asked, _: carried_out(steps(one, asked), one, asked)
+        scene,
+        ask,
+        ideal_of_count,
+        lambda each, asked, _: carried_out(steps(each, asked), each, asked),
     )
 
 
@@ -74,7 +77,7 @@ def with_assumptions(scene: Scene, ask: Ask, known: Result | None) -> Result:
 
 def every_assumption(scene: Scene) -> list[str]:
     """The assumptions of all choices of types of the stages."""
-    return [*dict.fromkeys(text for one in by_type(scene) for text in assumptions(one))]
+    return [*dict.fromkeys(text for each in by_type(scene) for text in assumptions(each))]
 
 
 def rated(scene: Scene, ask: Ask, known: Result | None) -> Result:

@@ -72,7 +72,7 @@ def best_count(scene: Scene, ask: Ask, real: Real, answer: Answer) -> Result:
     """
     clock = Clock(ask.budget)
     named = open_types(scene)
-    counts = [_unsolved_count(one, named, ask, clock, real) for one in scene.each]
+    counts = [_unsolved_count(each, named, ask, clock, real) for each in scene.each]
     order = sorted(
         range(len(counts)),
         key=lambda k: (counts[k].floor == math.inf, counts[k].real.value or 0.0),
@@ -99,8 +99,8 @@ def _unsolved_count(scene: Scene, named: bool, ask: Ask, clock: Clock, real: Rea
     unsolved = replace(ideal, status="limit", objective=missing, bound=bound, gap=None)
     unsolved = replace(unsolved, design={}, limits={}, certificate={}, message="not begun in time")
     result = ideal if ideal.status == "infeasible" else unsolved
-    found = replace(result, name="drive")
-    return replace(count, real=ideal, found=found, seconds=clock.seconds - before)
+    named_drive = replace(result, name="drive")
+    return replace(count, real=ideal, found=named_drive, seconds=clock.seconds - before)
 
 
 def _solved_count(

@@ -43,11 +43,11 @@ def may_drive(scene: "Scene") -> tuple[str, ...]:
 def driving_words(scene: "Scene") -> list[str]:
     """A sentence on what drives, where that may be the wheel."""
     members = may_drive(scene)
-    if members == ("wheel",) and any(own.epicyclic for own in scene.stage):
+    if members == ("wheel",) and any(stage.epicyclic for stage in scene.stage):
         places = dict[str, list[int]]()
-        for k, own in enumerate(scene.stage, 1):
-            outer = "ring" if own.held == "carrier" or not own.counts[0] else "carrier"
-            places.setdefault(outer if own.epicyclic else "wheel", []).append(k)
+        for k, stage in enumerate(scene.stage, 1):
+            outer = "ring" if stage.held == "carrier" or not stage.counts[0] else "carrier"
+            places.setdefault(outer if stage.epicyclic else "wheel", []).append(k)
         stages = (
             f"in stage{'s' * (len(ks) > 1)} {' and '.join(map(str, ks))} by the {member}"
             for member, ks in places.items()

@@ -195,14 +195,14 @@ def masses(scene: Scene, noted: bool = True) -> str:
 def _bodies(scene: Scene) -> str:
     """The bodies whose volumes and masses are given."""
     stages = scene.stage_tables
-    pairs = [own for own in stages if not own.epicyclic]
+    pairs = [stage for stage in stages if not stage.epicyclic]
     if not pairs:
-        gears = [gear for own in every_mesh(stages) for gear in (own.pinion, own.wheel)]
+        gears = [gear for stage in every_mesh(stages) for gear in (stage.pinion, stage.wheel)]
         bored = any(with_shared(gear, scene.gears).bore for gear in gears)
         less = ", masses those without the bores of the file" if bored else ""
         return f"Volumes are those of solid cylinders, of rings those of tubes{less}"
     of = "Volumes" if len(pairs) == len(stages) else "Volumes of pairs"
-    tables = [with_shared(getattr(own, m), scene.gears) for own in pairs for m in MEMBERS]
+    tables = [with_shared(getattr(stage, m), scene.gears) for stage in pairs for m in MEMBERS]
     if all(blank(table, None).solid and not table.web_thickness for table in tables):
         if any(map(scene.shifted, stages)):
             return (

@@ -345,7 +345,7 @@ def stage_with_planets(scene: "Scene", own: StageTable, stage: Stage) -> Stage:
 
 def planet_assumptions(scene: "Scene") -> Iterator[str]:
     """What the gears of planets and rings take for granted, in sentences."""
-    stages = [own for own in scene.stage if own.epicyclic]
+    stages = [stage for stage in scene.stage if stage.epicyclic]
     if not stages:
         return
     yield (
@@ -353,7 +353,7 @@ def planet_assumptions(scene: "Scene") -> Iterator[str]:
         "cylinders of the mean diameter (d_a + d_f)/2, a ring as the tube from there to its "
         "outside; pins and bearings are left out."
     )
-    cheeks = [own.carrier_over_face_width for own in stages if own.type == PLANETARY]
+    cheeks = [stage.carrier_over_face_width for stage in stages if stage.type == PLANETARY]
     if any(cheeks):
         yield (
             "Carriers count in volume and mass as two discs of the material of their planets, 2 a "
@@ -362,7 +362,7 @@ def planet_assumptions(scene: "Scene") -> Iterator[str]:
         )
     if not all(cheeks):
         yield "Carriers of planetary stages without carrier_over_face_width are left out."
-    if any(own.type == PLANETARY for own in stages):
+    if any(stage.type == PLANETARY for stage in stages):
         yield (
             "Profile shifts that the file does not give follow a rule of this program: the centre "
             "distance is midway between the reference distances of both meshes, or as much larger "
@@ -371,7 +371,7 @@ def planet_assumptions(scene: "Scene") -> Iterator[str]:
             "and its tips end at the form circle of the planets. A positive shift moves the ring's "
             "teeth towards its centre."
         )
-        if any(own.held == "sun" and own.face_width is None for own in stages):
+        if any(stage.held == "sun" and stage.face_width is None for stage in stages):
             yield "The face width of a stage whose sun is held is limited over its ring's diameter."
         yield (
             "Meshes of planets are rated against the carrier, with the torque over their number "

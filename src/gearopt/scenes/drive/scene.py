@@ -155,11 +155,11 @@ class Scene(Table):
     def _consistent(self) -> "Scene":
         """Refuse what tables ask against each other, with its key and what to write instead."""
         check_types(self)
-        for one in by_type(self):
+        for each in by_type(self):
             try:
-                one._check()
+                each._check()
             except PydanticCustomError as wrong:
-                raise renamed(one, wrong) from None
+                raise renamed(each, wrong) from None
         return self
 
     def _check(self) -> None:

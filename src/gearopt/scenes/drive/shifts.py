@@ -56,7 +56,7 @@ def check_shift(scene: "Scene", shifted: list[int], lacks: str, asked: str) -> N
     if shift is None:
         return
     summed = shift.sum is not None or shift.pinion_shift is not None
-    if not shifted and not (summed and any(own.type == "planetary" for own in scene.stage)):
+    if not shifted and not (summed and any(stage.type == "planetary" for stage in scene.stage)):
         rule = (
             "changes nothing: no gears are chosen at a given centre_distance of a [[stage]], nor "
             "by a sum of profile shifts"
@@ -69,7 +69,7 @@ def check_shift(scene: "Scene", shifted: list[int], lacks: str, asked: str) -> N
         )
         raise refuse(rule, tell, ("shift",), "tell")
     for name in ("rule", "contact_ratio", "tip_thickness", "specific_sliding"):
-        if name in shift.model_fields_set and any(own.epicyclic for own in scene.stage):
+        if name in shift.model_fields_set and any(stage.epicyclic for stage in scene.stage):
             rule = "is of stages of external gears alone, and is not kept by planets and rings"
             raise refuse(rule, at=("shift", name), action="remove")
     for name in ("pinion_shift", "sum"):

@@ -19,14 +19,14 @@ OF_PARALLEL = {*NOT_YET, "centre_distance"} - {"idler"}  # no stage that is size
 
 def open_types(scene: "Scene") -> bool:
     """Whether the type of a stage is to be chosen."""
-    return any(len(own.types) > 1 for own in scene.stage)
+    return any(len(stage.types) > 1 for stage in scene.stage)
 
 
 def by_type(scene: "Scene") -> tuple["Scene", ...]:
     """The drives of all choices of types, in the order of the file; itself where it has one."""
     if not open_types(scene):
         return (scene,)
-    return tuple(_of(scene, types) for types in product(*(own.types for own in scene.stage)))
+    return tuple(_of(scene, types) for types in product(*(stage.types for stage in scene.stage)))
 
 
 def check_types(scene: "Scene") -> None:
@@ -38,10 +38,10 @@ def check_types(scene: "Scene") -> None:
         rule = "has several types to choose from, of gears that are to be sized"
     elif scene.layout is not None:
         rule = "has several types, and a [layout] takes one"
-    elif (number := math.prod(len(own.types) for own in scene.stage)) > MOST:
+    elif (number := math.prod(len(stage.types) for stage in scene.stage)) > MOST:
         rule = f"leaves {number} choices of types, and {MOST} at most are compared"
     if rule:
-        k = max(k for k, own in enumerate(scene.stage) if len(own.types) > 1)
+        k = max(k for k, stage in enumerate(scene.stage) if len(stage.types) > 1)
         raise refuse(rule, scene.stage[k].types[0], ("stage", k, "type"), "sample")
 
 
@@ -53,18 +53,18 @@ def held_as(scene: "Scene", design: Mapping[str, Any]) -> "Scene":
 
 def words(scene: "Scene") -> str:
     """The types of the stages of a drive of one choice."""
-    return ", ".join(own.type for own in scene.stage)
+    return ", ".join(stage.type for stage in scene.stage)
 
 
 def _of(scene: "Scene", types: Sequence[str]) -> "Scene":
     rows = zip(scene.stage, types, strict=True)
-    stages = (_as(own, kind) if len(own.types) > 1 else own for own, kind in rows)
+    stages = (_as(stage, kind) if len(stage.types) > 1 else stage for stage, kind in rows)
     return scene.model_copy(update={"stage": tuple(stages)})
 
 
-def _as(own: StageTable, kind: str) -> StageTable:
+def _as(stage: StageTable, kind: str) -> StageTable:
     """A stage as one of its types, without the keys that only the others have."""
     wrong = {*meaningless(kind), *(OF_PARALLEL if kind != PARALLEL else ())}
-    kept = {k: v for k, v in own if k in own.model_fields_set and k not in wrong}
+    kept = {k: v for k, v in stage if k in stage.model_fields_set and k not in wrong}
     values: dict[str, Any] = kept | {"type": kind}
     return with_gears_named((StageTable.model_construct(set(values), **values),))[0]

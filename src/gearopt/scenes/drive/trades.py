@@ -51,8 +51,8 @@ def to_choose(scene: Scene) -> None:
 def _why_lacking(scene: Scene, name: str) -> str:
     """The reason why the drive lacks an objective; "" where it has it."""
     try:
-        for one in scene.each if open_types(scene) else scene.each[:1]:
-            replace(one.train(), objective=name)
+        for each in scene.each if open_types(scene) else scene.each[:1]:
+            replace(each.train(), objective=name)
     except ValueError as reason:
         return str(reason)
     return ""
@@ -89,13 +89,13 @@ def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
         return sides.traded(held, names, gears)
     each = [
         replace(
-            _of_train(scene, one.train(driver), names, method),
-            part=f"{_words(scene, one)}, {driver} drives".removesuffix(", pinion drives"),
+            _of_train(scene, chosen.train(driver), names, method),
+            part=f"{_words(scene, chosen)}, {driver} drives".removesuffix(", pinion drives"),
         )
-        for one in scene.each
+        for chosen in scene.each
         for driver in may_drive(scene)
     ]
-    curves = any(one.limiting is not None and not one.limiting.whole for one in each)
+    curves = any(chosen.limiting is not None and not chosen.limiting.whole for chosen in each)
     if len(each) > 1 and (scene.teeth is None or method not in (None, EXACT) or curves):
         raise SolveError(
             "numbers of stages or their types, and ratios above 1 and below, are compared by "
@@ -105,9 +105,9 @@ def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
     return replace(each[0], others=tuple(each[1:])) if len(each) > 1 else replace(each[0], part="")
 
 
-def _words(scene: Scene, one: Scene) -> str:
-    n = one.counts[0]
-    return words(one) if open_types(scene) else f"{n} stage{'s' * (n > 1)}"
+def _words(scene: Scene, held: Scene) -> str:
+    n = held.counts[0]
+    return words(held) if open_types(scene) else f"{n} stage{'s' * (n > 1)}"
 
 
 def _of_train(scene: Scene, train: Train, names: Sequence[str], method: str | None) -> Tradeoff:

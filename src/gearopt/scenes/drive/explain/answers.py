@@ -76,7 +76,7 @@ def _of_boxes(scene: Scene, clock: Clock) -> Remedies:
 def possible(scene: Scene, clock: Clock) -> Verdict:
     """Whether a drive has a design; of one that is laid out not known where it has gears."""
     case = Case(scene, clock)
-    answer = any_possible(case, [t for one in scene.each for t in trains(one)])
+    answer = any_possible(case, [t for each in scene.each for t in trains(each)])
     return UNKNOWN if answer and scene.layout is not None else Verdict(answer)
 
 
@@ -94,10 +94,10 @@ def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
     if result.value is None:
         return Explanation(result, message="no design was found in time", seconds=clock.seconds)
     if len(scene.each) > 1:
-        one = held_as(scene, result.design)
-        kept = f"types of the stages are held: {words(one)}"
-        kept = f"number of stages is held at {one.counts[0]}" if scene.several else kept
-        held = influences(one, ask, result)
+        chosen = held_as(scene, result.design)
+        kept = f"types of the stages are held: {words(chosen)}"
+        kept = f"number of stages is held at {chosen.counts[0]}" if scene.several else kept
+        held = influences(chosen, ask, result)
         return replace(held, message="; ".join(filter(None, (held.message, f"the {kept}"))))
     if scene.layout is not None:
         from gearopt.scenes.drive.explain import box_remedies

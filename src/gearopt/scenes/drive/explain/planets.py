@@ -84,8 +84,8 @@ def _wider(
 
 def ways_of_planets(scene: Scene) -> Iterator[Iterator[tuple[tuple[Change, ...], Scene]]]:
     """Yield of every key of stages with a ring the next values, near ones first, and drives."""
-    for k, own in enumerate(scene.stage):
-        for path, values in _next_values(own) if own.epicyclic else ():
+    for k, stage in enumerate(scene.stage):
+        for path, values in _next_values(stage) if stage.epicyclic else ():
             yield _changed(scene, ("stage", k, *path), values)
     if scene.duty.asks_ratio and any(own.epicyclic for own in scene.stage):
         key = "ratio" if scene.duty.output_speed is None else "output_speed"
@@ -113,32 +113,32 @@ def one_number(value: Any) -> Any:
     return value[0] if pair else value
 
 
-def _next_values(own: StageTable) -> Iterator[tuple[tuple[str, ...], list[Any]]]:
+def _next_values(stage: StageTable) -> Iterator[tuple[tuple[str, ...], list[Any]]]:
     """Yield the keys that a stage may write otherwise, and values, near ones first."""
-    if own.type == PLANETARY:
-        known = SHARING_RULES[SHARING].values if own.mesh_load_factor is None else range(2, 8)
-        low, high = own.counts[0], own.counts[-1]
+    if stage.type == PLANETARY:
+        known = SHARING_RULES[SHARING].values if stage.mesh_load_factor is None else range(2, 8)
+        low, high = stage.counts[0], stage.counts[-1]
         counts = [n for n in known if not low <= n <= high]
         counts.sort(key=lambda n: (n > high, min(abs(n - low), abs(n - high))))  # fewer have room
         yield ("planets",), [(n, n) for n in counts]
-        yield ("mesh_order",), [None] * (own.mesh_order is not None)
-        yield ("planet_teeth_reduction",), [None] * (own.planet_teeth_reduction is not None)
+        yield ("mesh_order",), [None] * (stage.mesh_order is not None)
+        yield ("planet_teeth_reduction",), [None] * (stage.planet_teeth_reduction is not None)
     for name in ("sun_teeth", "planet_teeth", "ring_teeth"):
-        yield (name,), _near(getattr(own, name))
-    if own.type == PLANETARY:
+        yield (name,), _near(getattr(stage, name))
+    if stage.type == PLANETARY:
         smaller = (
-            [own.planet_clearance * Fraction(n, 4) for n in (3, 2, 1, 0)]
-            if (own.planet_clearance)
+            [stage.planet_clearance * Fraction(n, 4) for n in (3, 2, 1, 0)]
+            if (stage.planet_clearance)
             else []
         )
         yield ("planet_clearance",), smaller
-        yield ("equally_spaced",), [False] * (own.equally_spaced is not False)
-        yield ("fixed",), [held for held in ("ring", "carrier") if held != own.held]
-    if own.ring.cutter_teeth is not None:
-        fewer = [own.ring.cutter_teeth // n for n in (2, 3, 4, 6, 8, 12, 16)]
+        yield ("equally_spaced",), [False] * (stage.equally_spaced is not False)
+        yield ("fixed",), [held for held in ("ring", "carrier") if held != stage.held]
+    if stage.ring.cutter_teeth is not None:
+        fewer = [stage.ring.cutter_teeth // n for n in (2, 3, 4, 6, 8, 12, 16)]
         yield ("ring", "cutter_teeth"), [z for z in fewer if z >= 5]
-    if own.ring.outside_diameter is not None:
-        wide = [times(own.ring.outside_diameter, factor) for factor in TIMES]
+    if stage.ring.outside_diameter is not None:
+        wide = [times(stage.ring.outside_diameter, factor) for factor in TIMES]
         yield ("ring", "outside_diameter"), wide
 
 

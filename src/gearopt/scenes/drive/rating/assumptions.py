@@ -30,7 +30,7 @@ def rating_assumptions(scene: Scene) -> list[str]:
     agma, iso = asked.standard != "iso6336", asked.standard != "agma"
     members = dict.fromkeys(drivers(scene))
     drive = "the gears named drive" if len(members) > 1 else f"the {next(iter(members))}s drive"
-    external = not any(own.epicyclic for own in scene.stage)
+    external = not any(stage.epicyclic for stage in scene.stage)
     drive, outer = (drive, "external ") if external else ("the members named input drive", "")
     sentences = [
         f"The rating is of {outer}cylindrical gears on parallel shafts; {drive}. "

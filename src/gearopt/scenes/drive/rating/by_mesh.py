@@ -93,8 +93,8 @@ def by_mesh(scene: Scene, design: DriveDesign) -> Meshes:
 
 def mesh_names(scene: Scene) -> tuple[MeshName, ...]:
     """What the meshes of a scene of `by_mesh` are called; none of one of pairs alone."""
-    known = (own.as_mesh for own in scene.stage_tables)
-    return tuple(own.name for own in known if own is not None)
+    known = (mesh.as_mesh for mesh in scene.stage_tables)
+    return tuple(mesh.name for mesh in known if mesh is not None)
 
 
 def _meshes_of(

@@ -395,7 +395,7 @@ def _shafts(
 ) -> tuple[ShaftRating, ...]:
     """Shafts of a drive under its largest load; turned: hands of pinions. Idlers have no torque."""
     if mesh_names(scene):
-        known = [own.as_mesh for own in scene.stage_tables]
+        known = [table.as_mesh for table in scene.stage_tables]
         return shafts_of_stages(known, *_largest_load(scene))
     rows = shaft_rows(pairs, turned, drivers(scene), *_largest_load(scene))
     idle = idlers(scene.stage)
