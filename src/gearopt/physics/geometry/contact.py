@@ -60,9 +60,9 @@ class ContactPath:
 
 
 def curvature_at(gear: Gear, diameter: Any, inside: Any = None) -> Any:
-    """Return the transverse radius of curvature sqrt(d_y^2 - d_b^2)/2 [mm] of a flank at d_y [mm].
+    """Radius of curvature sqrt(d_y^2 - d_b^2)/2 [mm] of a flank at d_y [mm]; below 0 of a ring.
 
-    Negative of a ring. inside: the least d_y^2 - d_b^2; None: NaN inside the base circle.
+    inside: the least d_y^2 - d_b^2; None: NaN inside the base circle.
     """
     square = diameter**2 - gear.base_diameter**2
     square = square if inside is None else np.maximum(square, inside)
@@ -95,11 +95,10 @@ def usable_path(pair: GearPair) -> ContactPath:
 
 @np.errstate(invalid="ignore")
 def active_root_diameters(pair: GearPair) -> tuple[Any, Any]:
-    """Return the start of active profile diameters d_Nf [mm] that the mate's tip circle gives.
+    """Start of active profile diameters d_Nf [mm] that the mate's tip circle gives.
 
     d_Nf1 = sqrt(d_b1^2 + (2 a sin(alpha_wt) - z2/|z2| sqrt(d_a2^2 - d_b2^2))^2); NaN where the
-    mate's tip passes the tangent point of the base circle (interference). Below d_Ff there is
-    interference with the fillet. Source: ISO 21771:2007, start of active profile diameter.
+    mate's tip passes the tangent point of the base circle. Source: ISO 21771:2007.
     """
     diameters = []
     for at, gear in zip(contact_path(pair).root_curvatures, pair.gears, strict=True):
@@ -118,10 +117,9 @@ def diameters_at(pair: GearPair, path: ContactPath, position: Any) -> tuple[Any,
 
 
 def free_tip_diameters(pair: GearPair) -> tuple[Any, Any]:
-    """Return the tip form diameters d_Na [mm] that just reach the form circles of the mates.
+    """Tip form diameters d_Na [mm] that just reach the form circles of the mates.
 
-    At the pair's centre distance; gears with longer tips have to be shortened to them. Source: ISO
-    21771:2007, start of active profile diameter, d_Nf = d_Ff solved for the mate's tip.
+    Source: ISO 21771:2007, d_Nf = d_Ff solved for the mate's tip.
     """
     path, (first, second) = contact_path(pair), pair.gears
     start = curvature_at(first, form_diameter(first), 0.0) - path.curvatures[0]
@@ -130,10 +128,9 @@ def free_tip_diameters(pair: GearPair) -> tuple[Any, Any]:
 
 
 def specific_sliding(path: ContactPath, ratio: Any, position: Any) -> tuple[Any, Any]:
-    """Return the specific sliding of pinion and wheel, zeta_1 = 1 - rho_2/(u rho_1), zeta_2.
+    """Specific sliding zeta_1 = 1 - rho_2/(u rho_1), zeta_2 = 1 - u rho_1/rho_2 (ISO 21771:2007).
 
-    zeta_2 = 1 - u rho_1/rho_2. ratio u; position s [mm]. Minus infinity where a flank's radius of
-    curvature is 0. Source: ISO 21771:2007, specific sliding.
+    position s [mm]. Minus infinity where a flank's radius of curvature is 0.
     """
     first, second = path.radii_of_curvature(position)
     return 1.0 - second / (ratio * first), 1.0 - ratio * first / second

@@ -72,23 +72,15 @@ def tool_tip(gear: Gear) -> ToolTip:
 
 
 def has_tip(gear: Gear) -> Any:
-    """Return whether the tool's flanks end before they meet: bool or array of them.
-
-    A tool with half_width < 0 may have a tip: its rounds then meet in an edge, which leaves a ridge
-    on the root circle.
-    """
+    """Whether the tool's flanks end before they meet; its rounds may meet in an edge before."""
     tip = tool_tip(gear)
     return np.greater(tip.half_width + tip.radius * np.cos(gear.rack.pressure_angle), 0.0)
 
 
 def largest_tip_radius(pressure_angle: Any, dedendum: Any) -> Any:
-    """Return rho_fP [normal modules] of a tool whose tip is one full round; see `ToolTip`.
-
-    normal pressure_angle [rad]; dedendum h_fP [normal modules]. E = 0 is solved for rho.
-    """
-    sine = np.sin(pressure_angle)
+    """Tip radius rho_fP [normal modules] of a tool whose tip is one full round, E = 0."""
     left = np.pi / 4.0 - dedendum * np.tan(pressure_angle)
-    return left * np.cos(pressure_angle) / (1.0 - sine)
+    return left * np.cos(pressure_angle) / (1.0 - np.sin(pressure_angle))
 
 
 def fillet_point(gear: Gear, theta: Any, tip: ToolTip | CutterTip | None = None) -> FilletPoint:
@@ -120,27 +112,24 @@ def _cut(gear: Gear, theta: Any, tip: ToolTip) -> Cut:
 
 
 def least_fillet_radius(gear: Gear) -> Any:
-    """Return the radius of curvature rho + c^2/(r + c) [mm] of the fillet at the root circle.
+    """Radius of curvature rho + c^2/(r + c) [mm] of the fillet of a spur gear at the root circle.
 
-    c: depth of the centre of the tool's tip round, r: reference radius. For spur gears and virtual
-    spur gears; AGMA 908-B89 takes it as the least of the fillet. Source: AGMA 908-B89, clause 5;
-    the curvature of a rolled curve (Euler and Savary) at its end.
+    c: depth of the centre of the tool's tip round, r: reference radius. Source: AGMA 908-B89,
+    clause 5, as the least of the fillet; Euler and Savary.
     """
     tip, radius = tool_tip(gear), 0.5 * gear.reference_diameter
     return tip.radius + tip.depth**2 / (radius + tip.depth)
 
 
 def undercut_depth(gear: Gear) -> Any:
-    """Return how far the tool's straight flank reaches below its last useful point [mm].
+    """How far the tool's straight flank reaches below its last useful point [mm]; > 0: undercut.
 
-    h_Ff - x_E m_n - (d/2) sin(alpha_t)^2, h_Ff = h_fP m_n - rho (1 - sin(alpha_n)). Above 0 the
-    gear is undercut. Source: ISO 21771:2007, undercut; the flank's end passes the tangent point of
-    the base circle. Of a ring it is negative: the rack moves away from that point.
+    h_Ff - x_E m_n - (d/2) sin(alpha_t)^2, h_Ff = h_fP m_n - rho (1 - sin(alpha_n)); below 0 of a
+    ring, from whose tangent point the rack moves away. Source: ISO 21771:2007, undercut.
     """
     tip = tool_tip(gear)
     end = tip.depth + tip.radius * np.sin(gear.rack.pressure_angle)
-    lever = 0.5 * gear.reference_diameter * np.sin(gear.transverse_pressure_angle) ** 2
-    return signed(end - lever, gear.teeth)
+    return signed(end - _lever(gear), gear.teeth)
 
 
 def teeth_without_undercut(rack: Rack, helix_angle: Any) -> Any:
@@ -158,17 +147,20 @@ def teeth_without_undercut(rack: Rack, helix_angle: Any) -> Any:
 
 
 def is_undercut(gear: Gear) -> Any:
-    """Return whether the tool cuts away involute above the base circle: bool or array of them."""
-    lever = 0.5 * gear.reference_diameter * np.sin(gear.transverse_pressure_angle) ** 2
-    return undercut_depth(gear) > TOUCHES * lever
+    """Whether the tool cuts away involute above the base circle: bool or array of them."""
+    return undercut_depth(gear) > TOUCHES * _lever(gear)
+
+
+def _lever(gear: Gear) -> Any:
+    """Depth (d/2) sin(alpha_t)^2 [mm] of the base circle's tangent point below the pitch line."""
+    return 0.5 * gear.reference_diameter * np.sin(gear.transverse_pressure_angle) ** 2
 
 
 def half_angle(gear: Gear, radius: Any) -> Any:
-    """Return half the angle [rad] of a tooth at a radius [mm], |radius| >= |d_b|/2, transverse.
+    """Half the angle s_t/d + inv(alpha_t) - inv(alpha_yt) [rad] of a tooth at a radius [mm].
 
-    s_t/d + inv(alpha_t) - inv(alpha_yt), s_n = m_n (pi/2 + 2 x tan(alpha_n)) + A_sn. Below the base
-    circle that of the base circle. Negative of a ring, as its radii are. Source: ISO 21771:2007,
-    tooth thickness half angle.
+    s_n = m_n (pi/2 + 2 x tan(alpha_n)) + A_sn; below the base circle that of the base circle;
+    negative of a ring. Source: ISO 21771:2007, tooth thickness half angle.
     """
     return base_half_angle(gear) - involute(profile_angle(gear, radius))
 
@@ -246,11 +238,7 @@ def _at_base(gear: Gear, tip: ToolTip, angle: Any) -> Any:
 
 
 def form_diameter(gear: Gear) -> Any:
-    """Return the root form diameter d_Ff [mm], where fillet and involute meet (`fillet_end`).
-
-    Without undercut and protuberance it is sqrt(d_b^2 + (d sin(alpha_t) - 2 (h_Ff - x_E m_n)/
-    sin(alpha_t))^2). Source: ISO 21771:2007, root form diameter of generated gears.
-    """
+    """Root form diameter d_Ff [mm], where fillet and involute meet (ISO 21771:2007)."""
     return 2.0 * fillet_point(gear, fillet_end(gear)).radius
 
 

@@ -36,30 +36,25 @@ def working_pressure_angle(
 ) -> Any:
     """Return the transverse working pressure angle alpha_wt [rad] without backlash.
 
-    inv(alpha_wt) = inv(alpha_t) + 2 (x1 + x2)/(z1 + z2) tan(alpha_n). shift_sum x1 + x2; teeth_sum
-    z1 + z2, negative of internal pairs; pressure angles alpha_n, alpha_t [rad]. NaN where no centre
-    distance is short enough: x1 + x2 < -(z1 + z2) inv(alpha_t)/(2 tan(alpha_n)), of internal pairs
-    greater. Source: ISO 21771:2007.
+    inv(alpha_wt) = inv(alpha_t) + 2 (x1 + x2)/(z1 + z2) tan(alpha_n); z1 + z2 < 0 of internal
+    pairs. NaN where no centre distance is short enough: x1 + x2 < -(z1 + z2) inv(alpha_t)/(2
+    tan(alpha_n)), of internal pairs greater. Source: ISO 21771:2007.
     """
     shifted = 2.0 * shift_sum / teeth_sum * np.tan(normal_angle)
     return involute_angle(involute(transverse_angle) + shifted)
 
 
 def shift_sum(working_angle: Any, teeth_sum: Any, normal_angle: Any, transverse_angle: Any) -> Any:
-    """Return x1 + x2 that mesh without backlash at alpha_wt [rad]; see `working_pressure_angle`.
-
-    Source: ISO 21771:2007, sum of the profile shift coefficients.
-    """
+    """Sum x1 + x2 that meshes without backlash at alpha_wt [rad]; see `working_pressure_angle`."""
     change = involute(working_angle) - involute(transverse_angle)
     return 0.5 * teeth_sum * change / np.tan(normal_angle)
 
 
 @np.errstate(invalid="ignore")
 def angle_at_distance(reference_distance: Any, transverse_angle: Any, distance: Any) -> Any:
-    """Return alpha_wt = arccos(a_0 cos(alpha_t)/a) [rad] at a centre distance a [mm].
+    """Angle alpha_wt = arccos(a_0 cos(alpha_t)/a) [rad] at a distance a [mm] (ISO 21771:2007).
 
-    reference_distance a_0 = (d1 + d2)/2 [mm], negative of internal pairs as a is; NaN below
-    a_0 cos(alpha_t), where the base circles overlap, or one holds the other. Source: ISO
-    21771:2007, working transverse pressure angle.
+    a_0 = (d1 + d2)/2, below 0 of internal pairs as a is; NaN where base circles overlap, or one
+    holds the other.
     """
     return np.arccos(reference_distance * np.cos(transverse_angle) / distance)

@@ -24,19 +24,15 @@ def base_helix_angle(gear: Gear) -> Any:
 
 
 def transverse_thickness(gear: Gear, diameter: Any) -> Any:
-    """Return the transverse tooth thickness s_yt [mm], an arc, at a diameter d_y [mm] >= d_b.
+    """Transverse tooth thickness s_yt = d_y (s_t/d + inv(alpha_t) - inv(alpha_yt)) [mm], an arc.
 
-    d_y (s_t/d + inv(alpha_t) - inv(alpha_yt)), with the thickness allowance; negative above the
-    point of a pointed tooth. Source: ISO 21771:2007, transverse tooth thickness.
+    At d_y >= d_b, with the thickness allowance; below 0 beyond a tooth's point. ISO 21771:2007.
     """
     return diameter * half_angle(gear, 0.5 * diameter)
 
 
 def normal_thickness(gear: Gear, diameter: Any) -> Any:
-    """Return the normal tooth thickness s_yn = s_yt cos(beta_y) [mm] at a diameter d_y [mm] >= d_b.
-
-    Source: ISO 21771:2007, normal tooth thickness.
-    """
+    """Normal tooth thickness s_yn = s_yt cos(beta_y) [mm] at d_y >= d_b [mm]; ISO 21771:2007."""
     return transverse_thickness(gear, diameter) * np.cos(helix_angle_at(gear, diameter))
 
 
@@ -57,14 +53,12 @@ def span_teeth(gear: Gear) -> int:
     teeth, angle = gear.teeth, gear.rack.pressure_angle
     shifted = 2.0 * gear.profile_shift / teeth * np.tan(angle)
     rolled = tangent / np.cos(base_helix_angle(gear)) ** 2 - shifted
-    spanned = (
-        signed(teeth, teeth) / np.pi * (rolled - involute(gear.transverse_pressure_angle)) + 0.5
-    )
-    return max(2, round(float(spanned)))
+    turned = rolled - involute(gear.transverse_pressure_angle)
+    return max(2, round(float(signed(teeth, teeth) / np.pi * turned + 0.5)))
 
 
 def span(gear: Gear, teeth: Any) -> Any:
-    """Return the span measurement W_k [mm] over k teeth, or spaces, with the thickness allowance.
+    """Span measurement W_k [mm] over k teeth, or spaces, with the thickness allowance.
 
     m_n cos(alpha_n) (pi (k - 1/2) + z inv(alpha_t) + 2 x tan(alpha_n)) + A_sn cos(alpha_n); of a
     ring all terms after the first change their sign. Source: ISO 21771:2007, span measurement.
@@ -77,10 +71,7 @@ def span(gear: Gear, teeth: Any) -> Any:
 
 
 def span_diameter(gear: Gear, teeth: Any) -> Any:
-    """Return the diameter sqrt(d_b^2 + (W_k cos(beta_b))^2) [mm] where the span touches flanks.
-
-    It has to lie between form diameter and tip diameter. Source: ISO 21771:2007.
-    """
+    """Diameter sqrt(d_b^2 + (W_k cos(beta_b))^2) [mm] where a span touches flanks; ISO 21771."""
     base = np.cos(base_helix_angle(gear))
     return signed(np.hypot(gear.base_diameter, span(gear, teeth) * base), gear.teeth)
 
@@ -90,9 +81,8 @@ def over_balls(gear: Gear, ball_diameter: Any) -> Any:
 
     inv(alpha_Kt) = D_M/(z m_n cos(alpha_n)) - pi/(2 z) + 2 x tan(alpha_n)/z + inv(alpha_t), their
     centres on d_K = d_b/cos(alpha_Kt); M = d_K + D_M for even z, d_K cos(pi/(2 z)) + D_M for odd z
-    (for balls of helical gears in one transverse plane), of a ring |d_K| and - D_M. z: floats or
-    arrays, whole.
-    ball_diameter D_M [mm]. Source: ISO 21771:2007, dimension over balls.
+    (for balls of helical gears in one transverse plane), of a ring |d_K| and - D_M. z: whole floats
+    or arrays. ball_diameter D_M [mm]. Source: ISO 21771:2007, dimension over balls.
     """
     angle = involute_angle(_ball_value(gear, ball_diameter))
     centres = gear.base_diameter / np.cos(angle)
@@ -102,10 +92,9 @@ def over_balls(gear: Gear, ball_diameter: Any) -> Any:
 
 
 def ball_contact_diameter(gear: Gear, ball_diameter: Any) -> Any:
-    """Return the diameter [mm] where a ball in a tooth space touches the flanks.
+    """Diameter d_b/cos(alpha_Mt) [mm] where a ball in a tooth space touches the flanks.
 
-    tan(alpha_Mt) = tan(alpha_Kt) - D_M cos(beta_b)/d_b, by d_b/cos(alpha_Mt). It has to lie between
-    form diameter and tip diameter. Source: ISO 21771:2007, ball contact circle.
+    tan(alpha_Mt) = tan(alpha_Kt) - D_M cos(beta_b)/d_b. Source: ISO 21771:2007.
     """
     angle = involute_angle(_ball_value(gear, ball_diameter))
     base = gear.base_diameter
@@ -120,11 +109,10 @@ def _ball_value(gear: Gear, ball_diameter: Any) -> Any:
 
 
 def circumferential_backlash(pair: GearPair) -> Any:
-    """Return the circumferential backlash j_wt [mm] at the working pitch circles, transverse.
+    """Circumferential backlash j_wt [mm] at the working pitch circles, transverse (ISO 21771:2007).
 
-    Pitch minus both thicknesses there, which hold the thickness allowances: exact, where
-    `backlash.thickness_backlash` is linear in the allowances. Negative: the teeth do not fit in.
-    Source: ISO 21771:2007, circumferential backlash.
+    Pitch minus both thicknesses there, which hold the allowances: exact, where
+    `backlash.thickness_backlash` is linear in them. Negative: the teeth do not fit in.
     """
     pinion, wheel = pair.working_diameters
     pitch = np.pi * pinion / pair.pinion_teeth
@@ -139,22 +127,14 @@ def normal_backlash(pair: GearPair) -> Any:
 
 
 def tip_clearances(pair: GearPair) -> tuple[Any, Any]:
-    """Return the tip clearances c = a - d_a/2 - d_f/2 [mm] of pinion and wheel tips.
-
-    Root diameters nominal, without backlash. Source: ISO 21771:2007, tip clearance.
-    """
-    pinion, wheel = pair.gears
-    centres = pair.centre_distance
-    return (
-        centres - 0.5 * (pinion.tip_diameter + wheel.root_diameter),
-        centres - 0.5 * (wheel.tip_diameter + pinion.root_diameter),
+    """Tip clearances c = a - d_a/2 - d_f/2 [mm] of both tips, roots nominal (ISO 21771:2007)."""
+    rows = zip(pair.gears, pair.gears[::-1], strict=True)
+    first, second = (
+        pair.centre_distance - 0.5 * (gear.tip_diameter + mate.root_diameter) for gear, mate in rows
     )
+    return first, second
 
 
 def virtual_teeth(gear: Gear) -> Any:
-    """Return the virtual number of teeth z_n = z/(cos(beta_b)^2 cos(beta)).
-
-    AGMA 908-B89 takes z/cos(beta)^3 instead. Source: ISO 6336-3:2006 and ISO 21771:2007.
-    """
-    cosine = np.cos(base_helix_angle(gear)) ** 2 * np.cos(gear.helix_angle)
-    return gear.teeth / cosine
+    """Virtual number of teeth z_n = z/(cos(beta_b)^2 cos(beta)) of ISO 6336-3:2006."""
+    return gear.teeth / (np.cos(base_helix_angle(gear)) ** 2 * np.cos(gear.helix_angle))
