@@ -80,35 +80,34 @@ class Request:
         second = {STEPPED: 2, WOLFROM: 3}.get(self.arrangement, len(self.gears))
         return float(self.modules) if k >= second else 1.0
 
-    def parts(self, z: Columns) -> list[tuple[Any, Any]]:
-        """Teeth ratio r = b/a of every set as (a, b) in whole numbers."""
-        return willis.set_teeth(self.sets(z))
+    def ratio_parts(self, z: Columns) -> tuple[Any, Any]:
+        """The ratio as whole numbers."""
+        return willis.ratio_parts(self.use, willis.set_teeth(self.sets(z)))
 
     def error(self, z: Columns) -> Any:
         """|i/u - 1| in doubles; infinite where input or output cannot turn, 0 if none is asked."""
-        above, below = willis.ratio_parts(self.use, self.parts(z))
+        above, below = self.ratio_parts(z)
         off: Any = 0.0
         if self.ratio is not None:
             with np.errstate(all="ignore"):
-                rest = above * float(self.ratio.denominator) - below * float(self.ratio.numerator)
-                off = abs(rest / (below * float(self.ratio.numerator)))
+                u, v = float(self.ratio.numerator), float(self.ratio.denominator)
+                off = abs((above * v - below * u) / (below * u))
         return choose((above == 0) | (below == 0), np.inf, off)
 
     def eta(self, z: Columns) -> Any:
         """Efficiency in doubles; 0 of a train that locks itself or has no ratio."""
-        parts = [(1.0 * a, 1.0 * b) for a, b in self.parts(z)]
+        parts = [(1.0 * a, 1.0 * b) for a, b in willis.set_teeth(self.sets(z))]
         losses = [(float(sun), float(ring)) for sun, ring in self.losses]
         return willis.efficiency(self.use, parts, losses)
 
     def exact_ratio(self, teeth: Sequence[int]) -> Fraction | None:
         """Ratio of one train; None where input or output cannot turn."""
-        above, below = willis.ratio_parts(self.use, self.parts(teeth))
+        above, below = self.ratio_parts(teeth)
         return Fraction(above, below) if above and below else None
 
     def exact_eta(self, teeth: Sequence[int]) -> Fraction:
         """Efficiency of one train that has a ratio; 0 where it locks itself."""
-        parts = [(Fraction(a), Fraction(b)) for a, b in self.parts(teeth)]
-        return Fraction(willis.efficiency(self.use, parts, self.losses))
+        return willis.flow(self.use, self.sets(teeth), self.losses).efficiency
 
     def places(self, z: Columns) -> list[Any]:
         """Places of planets in a turn, of each carrier; where they fit both rings, of two."""

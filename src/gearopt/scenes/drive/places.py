@@ -14,12 +14,11 @@ RANGES = {  # stem of the two limits of a stage: the key of their range
     "pinion": "pinion_teeth",
     "wheel": "wheel_teeth",
     "ratio": "stage_ratio",
+    "over_module": "face_width_over_module",
 }
+ENDS_OF = (1, "low"), (2, "high")
 ENDS: dict[str, tuple[str, int | None]] = {
-    **{f"{stem}_low": (key, 1) for stem, key in RANGES.items()},
-    **{f"{stem}_high": (key, 2) for stem, key in RANGES.items()},
-    "over_module_low": ("face_width_over_module", 1),
-    "over_module_high": ("face_width_over_module", 2),
+    **{f"{stem}_{end}": (key, k) for k, end in ENDS_OF for stem, key in RANGES.items()},
     "least_width": ("minimum_face_width", None),
     "wheel_diameter": ("wheel_diameter", None),
     "helix_cosine": ("helix_angle", None),

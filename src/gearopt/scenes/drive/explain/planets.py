@@ -24,6 +24,12 @@ OF_PLANETS = (  # what is asked of the teeth of such a stage, the dearest to dro
 )
 WIDER = 1.25  # by which ranges of teeth are dropped
 MEMBERS = ("sun", "planet", "ring")
+FREE: dict[str, tuple[str, Any]] = {  # what is asked beside teeth: a field of `Planets`, without it
+    "equally_spaced": ("spaced", False),
+    "mesh_order": ("order", "any"),
+    "planet_clearance": ("clearance", 0.0),
+    "wheel_diameter": ("widest", math.inf),
+}
 RATIOS = "1.02", "1.05", "1.1", "1.15", "1.2", "1.3", "1.5", "2"  # by which ratios are tried
 STEPS, TIMES = 12, (1.1, 1.25, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)  # teeth and diameters that are tried
 
@@ -38,22 +44,16 @@ def of_planets(stage: Stage) -> Iterator[str]:
         else:
             yield from [f"{member}_teeth_low"] * (low > 1)
             yield from [f"{member}_teeth_high"] * (high < LARGE)
-    if way.count:
-        yield from ["equally_spaced"] * way.spaced
-        yield from ["mesh_order"] * (way.order != "any")
-        yield from ["planet_clearance"] * (way.clearance > 0.0)
-    yield from ["wheel_diameter"] * math.isfinite(way.widest)
+    for name, (key, free) in FREE.items():
+        if (way.count or name == "wheel_diameter") and getattr(way, key) != free:
+            yield name
 
 
 def without_planets(stage: Stage, dropped: set[str]) -> Stage:
     """The stage without what is dropped; ranges of teeth are then wider."""
     first = stage.options[0].planets
     wider = {m: _wider(m, getattr(first, m), dropped, first.held == "sun") for m in MEMBERS}
-    changed: dict[str, Any] = dict(wider)
-    changed |= {"spaced": False} if "equally_spaced" in dropped else {}
-    changed |= {"order": "any"} if "mesh_order" in dropped else {}
-    changed |= {"clearance": 0.0} if "planet_clearance" in dropped else {}
-    changed |= {"widest": math.inf} if "wheel_diameter" in dropped else {}
+    changed: dict[str, Any] = wider | dict(FREE[name] for name in FREE.keys() & dropped)
     options = []
     for option in stage.options:
         planets = replace(option.planets, **changed)
@@ -126,12 +126,8 @@ def _next_values(stage: StageTable) -> Iterator[tuple[tuple[str, ...], list[Any]
     for name in ("sun_teeth", "planet_teeth", "ring_teeth"):
         yield (name,), _near(getattr(stage, name))
     if stage.type == PLANETARY:
-        smaller = (
-            [stage.planet_clearance * Fraction(n, 4) for n in (3, 2, 1, 0)]
-            if (stage.planet_clearance)
-            else []
-        )
-        yield ("planet_clearance",), smaller
+        gap = stage.planet_clearance
+        yield ("planet_clearance",), [gap * Fraction(n, 4) for n in (3, 2, 1, 0)] if gap else []
         yield ("equally_spaced",), [False] * (stage.equally_spaced is not False)
         yield ("fixed",), [held for held in ("ring", "carrier") if held != stage.held]
     if stage.ring.cutter_teeth is not None:
