@@ -107,10 +107,10 @@ class GearSet:
         if self.shown[1]:
             ring = body(self.ring, ring_angle, 3)
             if self.ring.rim:
-                around = _circle(self.ring.rim)
+                t, shape = PITCH * np.arange(180) / 180, self.ring.outline
+                around = self.ring.rim * np.stack((np.cos(t), np.sin(t)), axis=1)
                 rows.append(Body(around, style="body", colour=series(3)))
-                whole = np.concatenate((around, around[:1], self.ring.outline[::-1]))
-                whole = np.concatenate((whole, self.ring.outline[-1:]))
+                whole = np.concatenate((around, around[:1], shape[::-1], shape[-1:]))
                 rows.append(Body(whole, ring.places, "rim", series(3)))
             rows.append(ring)
         return rows
@@ -127,17 +127,11 @@ class GearSet:
         return Body(points, places, "shaft", title="carrier")
 
 
-def _circle(radius: float) -> list[tuple[float, float]]:
-    turns = (PITCH * k / 180 for k in range(180))
-    return [(radius * math.cos(t), radius * math.sin(t)) for t in turns]
-
-
 def animation(
     sets: Sequence[GearSet],
     name: str,
     ends: Sequence[tuple[str, float]],
     caption: str,
-    sign: str = "view",
 ) -> Animation:
     """Sets as they turn: one turn of the slower carrier, at most MOST_TURNS of the input.
 
@@ -148,7 +142,7 @@ def animation(
     turns = np.linspace(0.0, min(1.0 / slow, MOST_TURNS), MOMENTS)
     return Animation(
         name,
-        [_view(it, f"{name}, {sign} {k}", turns) for k, it in enumerate(sets, 1)],
+        [_view(it, f"{name}, view {k}", turns) for k, it in enumerate(sets, 1)],
         np.linspace(0.0, SECONDS, MOMENTS),
         f"The input turns counter-clockwise; {caption}",
         [Reading(f"turns of the {of}", speed * turns, "", 3) for of, speed in ends],

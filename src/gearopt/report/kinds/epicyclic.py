@@ -1,8 +1,10 @@
 """A planetary train: its teeth, what turns how fast, what flows where, and where planets are."""
 
 import math
+from collections import Counter
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
 from gearopt.formulations.epicyclic.design import EpicyclicDesign
 from gearopt.formulations.epicyclic.request import COUPLED, SETS, SIMPLE
@@ -56,13 +58,9 @@ def train(result: Result, measures: Measures) -> Section | None:
         same = dict(zip(OWN, sum(design.sets, ()), strict=True))
         names = {n: " = ".join(o for o in OWN if same[o] == n) for n in same.values()}
     members = [replace(m, name=names.get(m.name) or m.name) for m in design.members]
-    tables = [
-        Table("gears", *records(design.gears, measures)),
-        Table("members", *records(members, measures)),
-        Table("meshes", *records(design.meshes, measures)),
-        Table("planets", *records(design.places, measures)),
-    ]
-    tables = [table for table in tables if table.rows]
+    named: dict[str, Any] = {"gears": design.gears, "members": members}
+    named |= {"meshes": design.meshes, "planets": design.places}
+    tables = [Table(name, *records(rows, measures)) for name, rows in named.items() if rows]
     words = (assembly(design), flow(design))
     return Section("Train", words=words, tables=tables, terminal=(*words, *tables))
 
@@ -72,11 +70,8 @@ def assembly(design: EpicyclicDesign) -> str:
     phases = {place.sun_phase for place in design.places}
     meshing = {1: "in step", 2: "in counter-phase" if 0.5 in phases else ""}.get(len(phases))
     turns = list(dict.fromkeys(place.turn for place in design.places))
-    counts = {sum(p.planets == place.planets for p in design.places) for place in design.places}
-    equal = all(
-        Fraction(place.turn) in {Fraction(place.planet - 1, n) for n in counts}
-        for place in design.places
-    )
+    counts = Counter(place.planets for place in design.places)
+    equal = all(Fraction(p.turn) * counts[p.planets] == p.planet - 1 for p in design.places)
     spaced = "spaced equally" if equal else f"at {', '.join(turns)} of a turn"
     return (
         f"All planets are alike and can be assembled {spaced}; they mesh "
@@ -105,12 +100,8 @@ def turning(result: Result, measures: Measures) -> Section | None:
         return None
     design = _design(result)
     count = 1 if design.arrangement == SIMPLE else 2  # sets, or steps of the planets
-    ends = [
-        (f"{member.name} ({use})", member.speed)
-        for use in ("input", "output")
-        for member in design.members
-        if member.use == use
-    ]
+    used = sorted((m.use, m.name, m.speed) for m in design.members if m.use in ("input", "output"))
+    ends = [(f"{name} ({use})", speed) for use, name, speed in used]
     words = "lengths are in modules, teeth are not involutes."
     sets = [gear_set(design, k) for k in range(count)]
     turns = animation(sets, "the train as it turns", ends, words)
