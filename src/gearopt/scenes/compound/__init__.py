@@ -20,7 +20,7 @@ from gearopt.optimise.typed import untyped
 from gearopt.scenes.kind import Kind, Trades, examples_in
 from gearopt.scenes.plan import one_step
 from gearopt.scenes.reading.ask import Ask, unseeded
-from gearopt.scenes.reading.fields import Table, choice, speed_ratio, whole, words
+from gearopt.scenes.reading.fields import ProblemFile, Table, choice, speed_ratio, whole
 from gearopt.scenes.reading.lists import span
 
 MIN_TEETH, MAX_TEETH = 5, 400  # teeth of a gear that a file may ask for
@@ -51,13 +51,9 @@ class Train(Table):
     )
 
 
-class Scene(Table):
+class Scene(ProblemFile):
     """A compound gear train."""
 
-    title: Annotated[str, words()] = Field("", description="Title of the report")
-    source: Annotated[str, words()] = Field(
-        "", description="Where the data and the expected value come from"
-    )
     train: Train
 
 

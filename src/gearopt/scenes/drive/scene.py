@@ -74,7 +74,7 @@ from gearopt.scenes.drive.without_planets import no_limits
 from gearopt.scenes.explaining.numbers import around, in_reverse
 from gearopt.scenes.parts import Duty
 from gearopt.scenes.reading.choices import Between, Choice, Preferred, values_of
-from gearopt.scenes.reading.fields import Table, refuse, whole, words
+from gearopt.scenes.reading.fields import ProblemFile, refuse, whole
 from gearopt.scenes.reading.lists import span
 from gearopt.units import Quantity
 
@@ -98,16 +98,12 @@ class DriveDuty(Duty):
     RATIO_NEEDED = False
 
 
-class Scene(Table):
+class Scene(ProblemFile):
     """The tables of a file of kind "drive", which are checked against each other."""
 
     UNRATED: ClassVar[tuple[str, ...]] = ()  # keys of gears that another kind uses without rating
     model_config = ConfigDict(
         json_schema_extra={"anyOf": [{"required": ["limits"]}, {"required": ["rating"]}]}
-    )
-    title: Annotated[str, words()] = Field("", description="Title of the report")
-    source: Annotated[str, words()] = Field(
-        "", description="Where the data and the expected value come from"
     )
     duty: DriveDuty
     stages: Annotated[tuple[int, int] | None, STAGES] = Field(

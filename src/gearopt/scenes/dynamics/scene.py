@@ -2,9 +2,8 @@
 
 import math
 from fractions import Fraction
-from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from gearopt.formulations.dynamics.orbit.task import Task
 from gearopt.physics.motion.moving_pair import MovingPair, Rotor, damping_of
@@ -17,7 +16,7 @@ from gearopt.scenes.dynamics.tables import (
     SpeedsTable,
     StabilityTable,
 )
-from gearopt.scenes.reading.fields import Table, refuse, words
+from gearopt.scenes.reading.fields import ProblemFile, refuse
 
 NEEDED = {  # keys of [mesh] that a shape of the wave asks for; others change nothing
     "constant": ("stiffness",),
@@ -30,13 +29,9 @@ MOST_PERIODS = 100_000  # of the mesh in a motion
 SHAPED = ("stiffness", "depth", "duty", "ramp", "cosines", "sines", "pair")
 
 
-class Scene(Table):
+class Scene(ProblemFile):
     """A spur pair whose axes move on their bearings."""
 
-    title: Annotated[str, words()] = Field("", description="Title of the report")
-    source: Annotated[str, words()] = Field(
-        "", description="Where the data and the expected value come from"
-    )
     pinion: RotorTable
     wheel: RotorTable
     mesh: MeshTable

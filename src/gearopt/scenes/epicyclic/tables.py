@@ -20,6 +20,7 @@ from gearopt.formulations.epicyclic.request import (
 )
 from gearopt.physics.planetary.willis import Use, ratio_parts
 from gearopt.scenes.reading.fields import (
+    ProblemFile,
     Reads,
     Table,
     choice,
@@ -27,7 +28,6 @@ from gearopt.scenes.reading.fields import (
     refuse,
     speed_ratio,
     whole,
-    words,
 )
 from gearopt.scenes.reading.lists import pair, several, span
 
@@ -168,13 +168,9 @@ class Aim(Table):
     )
 
 
-class Scene(Table):
+class Scene(ProblemFile):
     """A planetary train."""
 
-    title: Annotated[str, words()] = Field("", description="Title of the report")
-    source: Annotated[str, words()] = Field(
-        "", description="Where the data and the expected value come from"
-    )
     train: Train
     teeth: Teeth
     efficiency: Efficiency = Field(default_factory=Efficiency)

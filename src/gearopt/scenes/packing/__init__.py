@@ -42,7 +42,7 @@ from gearopt.scenes.explaining.numbers import rounded
 from gearopt.scenes.kind import Kind, examples_in
 from gearopt.scenes.plan import Step, carried_out
 from gearopt.scenes.reading.ask import Ask
-from gearopt.scenes.reading.fields import Table, choice, quantity, refuse, whole, words
+from gearopt.scenes.reading.fields import ProblemFile, Table, choice, quantity, refuse, whole, words
 from gearopt.scenes.reading.lists import pair
 from gearopt.scenes.reading.numbered_names import numbered
 from gearopt.scenes.reading.toml_writing import dotted
@@ -128,13 +128,9 @@ class Aim(Table):
     )
 
 
-class Scene(Table):
+class Scene(ProblemFile):
     """A packing."""
 
-    title: Annotated[str, words()] = Field("", description="Title of the report")
-    source: Annotated[str, words()] = Field(
-        "", description="Where the data and the expected value come from"
-    )
     cylinder: tuple[CylinderTable, ...] = Field(description="One table per size or place")
     container: Container = Field(default_factory=Container)
     layers: Layers = Field(default_factory=lambda: Layers(most=1))

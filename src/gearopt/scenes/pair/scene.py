@@ -1,7 +1,7 @@
 """A spur pair's file as a whole: the tables of a drive of one stage, and those of its contact."""
 
 from fractions import Fraction
-from typing import Annotated, Any, ClassVar
+from typing import Any, ClassVar
 
 from pydantic import Field, ValidationError, model_validator
 
@@ -17,7 +17,7 @@ from gearopt.scenes.pair.pair_flaws import check_level, check_pair
 from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.sharing_tables import SharingTable
 from gearopt.scenes.reading.choices import values_of
-from gearopt.scenes.reading.fields import Table, refuse, words
+from gearopt.scenes.reading.fields import ProblemFile, refuse
 from gearopt.scenes.reading.toml_writing import dotted
 
 # Where a file that asks for a size says nothing: ranges that suit most spur pairs, as the example
@@ -34,13 +34,9 @@ class OneStage(Drive):
     UNRATED: ClassVar[tuple[str, ...]] = ("elastic_modulus", "poisson_ratio")
 
 
-class Scene(Table):
+class Scene(ProblemFile):
     """A spur pair."""
 
-    title: Annotated[str, words()] = Field("", description="Title of the report")
-    source: Annotated[str, words()] = Field(
-        "", description="Where the data and the expected value come from"
-    )
     duty: DriveDuty
     gears: Gears = Field(default_factory=Gears)
     stage: tuple[StageTable, ...] = Field(

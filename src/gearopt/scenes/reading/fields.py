@@ -11,9 +11,9 @@ from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError, core_schema
 
 from gearopt import units
@@ -424,3 +424,12 @@ def meant(text: str, dimension: str, likely: Callable[[str], str]) -> str:
     if unit is None or (unit[0] != word[0] and unit[1:] == word[1:]):
         return ""  # not MW for mW: that is another unit, and the number would be wrong
     return f"{match[1].replace(',', '.')} {unit}"
+
+
+class ProblemFile(Table):
+    """What files of all kinds have."""
+
+    title: Annotated[str, words()] = Field("", description="Title of the report")
+    source: Annotated[str, words()] = Field(
+        "", description="Where the data and the expected value come from"
+    )

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import replace
-from typing import Annotated, Any
+from typing import Any
 
 from pydantic import Field, model_validator
 
@@ -13,7 +13,7 @@ from gearopt.formulations.servo.split import ServoTrain, StiffTrain
 from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.formulations.servo.tolerance.stack import RUN_OUT
 from gearopt.physics.stiffness import stiffness_of_frequency
-from gearopt.scenes.reading.fields import Table, refuse, words
+from gearopt.scenes.reading.fields import ProblemFile, refuse
 from gearopt.scenes.servo.tables.mesh import (
     TWO_SIDED,
     Accuracy,
@@ -45,16 +45,12 @@ __all__ = ["Scene"]  # messages show tables of the example
 OF_PAIRS = "train mesh tolerances cost budget shaft stiffness lightest space".split()
 
 
-class Scene(Table):
+class Scene(ProblemFile):
     """A servo axis: motor, two-stage spur gear train, load. Tables switch its parts on.
 
     Or a planetary stage that is given, in place of the train.
     """
 
-    title: Annotated[str, words()] = Field("", description="Title of the report")
-    source: Annotated[str, words()] = Field(
-        "", description="Where the data and the expected value come from"
-    )
     motor: Motor | None = None
     load: Load | None = None
     duty: Duty | None = None

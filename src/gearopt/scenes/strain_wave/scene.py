@@ -1,7 +1,6 @@
 """A strain wave gearing's file as a whole, and what it asks of the formulations."""
 
 import math
-from typing import Annotated
 
 from pydantic import Field, model_validator
 
@@ -11,7 +10,7 @@ from gearopt.formulations.strain_wave.design import INVOLUTE
 from gearopt.formulations.strain_wave.swept_report import HALF_LOCUS, Law
 from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.rim import Cup
-from gearopt.scenes.reading.fields import Table, refuse, words
+from gearopt.scenes.reading.fields import ProblemFile, refuse
 from gearopt.scenes.strain_wave.law_faults import Fault, contact_fault, law_fault
 from gearopt.scenes.strain_wave.tables import (
     MODULES,
@@ -45,13 +44,9 @@ CONVEX, CONCAVE, TANGENT = 1.37, 1.57, 0.1  # modules: of a design in the litera
 START_RIM = 8.0 / 900.0  # of the outer diameter
 
 
-class Scene(Table):
+class Scene(ProblemFile):
     """A strain wave gearing."""
 
-    title: Annotated[str, words()] = Field("", description="Title of the report")
-    source: Annotated[str, words()] = Field(
-        "", description="Where the data and the expected value come from"
-    )
     duty: WaveDuty
     gears: WaveGears = Field(default_factory=WaveGears)
     teeth: WaveTeeth = Field(default_factory=WaveTeeth)
