@@ -90,10 +90,8 @@ def _sets(request: Request, at: int) -> IntArray:
 
 def _firsts(request: Request) -> tuple[IntArray, Any, Any]:
     """First parts, and of each a bound of the objective and the fewest teeth of a train with it."""
-    if request.arrangement == STEPPED:
-        firsts = _grid(*request.teeth[:2])
-    else:
-        firsts = _sets(request, 0)
+    stepped = request.arrangement == STEPPED
+    firsts = _grid(*request.teeth[:2]) if stepped else _sets(request, 0)
     rest = request.teeth[FIRST[request.arrangement] :]
     fewest = firsts.sum(axis=1) + sum(low for low, _ in rest)
     error = np.zeros(len(firsts))
@@ -144,9 +142,10 @@ def _seconds(request: Request) -> IntArray:
     Of coupled sets second sets, of each ratio of their teeth the one of fewest: what a train loses
     and its ratio depend on z_r/z_s alone, limits of a set on its own teeth.
     """
+    if request.arrangement == SIMPLE:
+        return np.zeros((1, 0), np.int64)
     if request.arrangement != COUPLED:
-        last = request.teeth[-2:-1] if request.arrangement != SIMPLE else ()
-        return _grid(*last, (0, 2 * request.coaxial if last else 0))
+        return _grid(request.teeth[-2], (0, 2 * request.coaxial))
     sets = _sets(request, 3)
     alone = replace(
         request,
@@ -177,9 +176,7 @@ def _within(request: Request, trains: IntArray) -> Any:
 
 def _completed(request: Request, firsts: IntArray, seconds: IntArray) -> IntArray:
     """All trains with some first parts whose centre distances are equal."""
-    if request.arrangement == SIMPLE:
-        return firsts
-    if request.arrangement == COUPLED:
+    if request.arrangement in (SIMPLE, COUPLED):
         first, second = np.indices((len(firsts), len(seconds))).reshape(2, -1)
         return np.column_stack((firsts[first], seconds[second]))
     ring = _base(request, firsts)[:, None] + seconds.sum(axis=1)

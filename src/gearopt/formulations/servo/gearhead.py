@@ -52,8 +52,7 @@ def described(
 ) -> GearheadDesign:
     """The stage as a result has it; bodies: as of `inertias`; lost: of `lost_motions`."""
     mass, parts = inertias(gears, *bodies)
-    flow = gears.flow(friction or 0.0)
-    lossy = friction is not None
+    flow, lossy = gears.flow(friction or 0.0), friction is not None
     return GearheadDesign(
         planets=gears.planets,
         teeth=f"{gears.sun.teeth:.0f}, {gears.planet.teeth:.0f}, {-gears.ring.teeth:.0f}",

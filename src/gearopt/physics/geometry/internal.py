@@ -51,7 +51,7 @@ class Engagement:
 
 
 def trochoidal_clearance(mesh: Engagement) -> Any:
-    """Return how far the tips pass each other [mm] at the ring's tip circle, as they leave mesh.
+    """How far the tips pass each other [mm] at the ring's tip circle, as they leave mesh.
 
     r_a2 (`ring_tip`(theta_1) - theta_2), theta: angles of the crossing of the tip circles at both
     centres. Negative: trochoidal interference, or fouling. Source: SDP/SI, Elements of Metric Gear
@@ -91,10 +91,7 @@ def engagement(pair: GearPair) -> Engagement:
 
 
 def cutting(ring: Gear) -> Engagement:
-    """Return the numbers of a ring and its cutter at the end of the cut.
-
-    Corners of the cutter's tips are sharp here: their rounds cut less.
-    """
+    """The numbers of a ring and its cutter, of sharp tips, at the end of the cut."""
     working, distance = ring.cutting(ring.generating_shift)
     tips = 0.5 * ring.cutter_tip_diameter, -0.5 * ring.tip_diameter
     bases = reference_and_base(ring)[1], -0.5 * ring.base_diameter

@@ -18,10 +18,8 @@ def places(sun: Any, planet: Any, ring_planet: Any, ring: Any) -> Any:
     """Number of equal parts of a turn at each of which a planet fits, counted from another.
 
     (z_s z_p2 + z_r z_p1)/gcd(z_p1, z_p2), of planets with one step z_s + z_r; ring_planet: the step
-    in mesh with the ring. N planets can be spaced equally where it is a multiple of N. Eliminating
-    chi from both conditions leaves phi/(2 pi) (z_s z_p2 + z_r z_p1) = a z_p2 + b z_p1 for whole a
-    and b, whose right side takes the multiples of the greatest common divisor. Of two rings the
-    greatest common divisor of both numbers counts: angles that suit both are parts of it.
+    in mesh with the ring. Eliminating chi leaves phi/(2 pi) (z_s z_p2 + z_r z_p1) = a z_p2 + b z_p1
+    for whole a and b. Of two rings the greatest common divisor of both numbers counts.
     """
     return (sun * ring_planet + ring * planet) // np.gcd(planet, ring_planet)
 

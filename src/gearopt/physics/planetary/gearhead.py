@@ -53,8 +53,8 @@ class Gearset:
     def pin_share(self) -> tuple[Any, Any]:
         """Delta per displacement of a pin along its circle, and along the force on it.
 
-        cos(alpha_1) + cos(alpha_2) by the working angles of both meshes, and |u_1 + u_2| = sqrt(2 +
-        2 cos(alpha_1 + alpha_2)) by unit vectors u along the lines of action.
+        cos(alpha_1) + cos(alpha_2) of both working angles; |u_1 + u_2| of unit vectors u along the
+        lines of action.
         """
         first, second = (pair.working_angle for pair in self.pairs())
         return np.cos(first) + np.cos(second), np.sqrt(2.0 + 2.0 * np.cos(first + second))
@@ -82,11 +82,7 @@ def inertias(
 
 
 def planet_play(gears: Gearset, outwards: Any = 0.0) -> Any:
-    """Delta [mm] within which a planet is free: sum of j_wt cos(alpha_wt) of its meshes.
-
-    Moved outwards a planet has more backlash at the sun, and as much less at the ring where both
-    working angles are equal, but for second order.
-    """
+    """Delta [mm] within which a planet, moved outwards, is free: j_wt cos(alpha_wt), in sum."""
     pairs = gears.pairs(outwards)
     return sum(circumferential_backlash(p) * np.cos(p.working_angle) for p in pairs)
 
