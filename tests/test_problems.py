@@ -108,6 +108,7 @@ LONG = (
     "four_stages",
     "four_stage_box",
     "planetary_box",
+    "planetary_or_parallel",
     "three_stage_free_width",
     "three_stage_both_series",
     "three_stage_fine_ratio_coprime",
