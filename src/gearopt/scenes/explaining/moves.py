@@ -1,8 +1,8 @@
 """The numbers of a file that a remedy may move, and the file with some of them moved."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 from gearopt.frozen import dataclass
 from gearopt.optimise.explaining.explanation import Change
@@ -21,6 +21,7 @@ from gearopt.scenes.explaining.numbers import (
 from gearopt.scenes.reading.toml_writing import dotted, toml_text
 from gearopt.units import Quantity
 
+T = TypeVar("T")
 SET = 2.0  # a factor above 1, at which a switch is set
 LIMIT, SIZE, DUTY = "limit", "size", "duty"  # roles; a size is given, a duty is what is asked for
 
@@ -109,6 +110,25 @@ class Edited:
     changes: tuple[Change, ...]
     places: tuple[Move, ...]
     moved: Any
+
+
+def with_values(scene: T, values: Mapping[Path, Any]) -> tuple[tuple[Change, ...], T]:
+    """A scene with other values at some places, and its changes."""
+    changes, other = [], scene
+    for path, value in values.items():
+        old, write = (
+            "" if v is None else toml_text(written(v, path)) for v in (at(scene, path), value)
+        )
+        changes.append(Change(dotted(path), old, write, 1.0))
+        other = put(other, path, value)
+    return tuple(changes), other
+
+
+def with_each(
+    scene: T, path: Path, values: Iterable[Any]
+) -> Iterator[tuple[tuple[Change, ...], T]]:
+    """Yield scenes with another value at a place, in the order of the values."""
+    return (with_values(scene, {path: value}) for value in values)
 
 
 def edited(scene: Any, moves: Moves) -> Edited | None:

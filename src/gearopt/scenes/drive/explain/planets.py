@@ -14,8 +14,8 @@ from gearopt.scenes.drive.planetary import SHARING
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.drive import StageTable
 from gearopt.scenes.drive.tables.planetary import PLANETARY, Teeth
-from gearopt.scenes.explaining.numbers import SHORT, Path, at, cut, put, times, written
-from gearopt.scenes.reading.toml_writing import dotted, toml_text
+from gearopt.scenes.explaining.moves import with_each
+from gearopt.scenes.explaining.numbers import SHORT, cut, times
 
 OF_PLANETS = (  # what is asked of the teeth of such a stage, the dearest to drop
     *("sun_teeth_low", "sun_teeth_high", "sun_teeth", "ring_teeth_low", "ring_teeth_high"),
@@ -86,31 +86,12 @@ def ways_of_planets(scene: Scene) -> Iterator[Iterator[tuple[tuple[Change, ...],
     """Yield of every key of stages with a ring the next values, near ones first, and drives."""
     for k, stage in enumerate(scene.stage):
         for path, values in _next_values(stage) if stage.epicyclic else ():
-            yield _changed(scene, ("stage", k, *path), values)
-    if scene.duty.asks_ratio and any(own.epicyclic for own in scene.stage):
+            yield with_each(scene, ("stage", k, *path), values)
+    if scene.duty.asks_ratio and any(stage.epicyclic for stage in scene.stage):
         key = "ratio" if scene.duty.output_speed is None else "output_speed"
         each = [Fraction(f) ** way for f in RATIOS for way in (1, -1)]
         now = getattr(scene.duty, key)
-        yield _changed(scene, ("duty", key), [cut(times(now, f), 1, SHORT) for f in each])
-
-
-def _changed(
-    scene: Scene, path: Path, values: list[Any]
-) -> Iterator[tuple[tuple[Change, ...], Scene]]:
-    was = _text(at(scene, path), path)
-    for value in values:
-        change = Change(dotted(path), was, _text(value, path), 1.0)
-        yield (change,), put(scene, path, value)
-
-
-def _text(value: Any, path: Path) -> str:
-    return "" if value is None else toml_text(one_number(written(value, path)))
-
-
-def one_number(value: Any) -> Any:
-    """A range of equal ends as one number."""
-    pair = isinstance(value, list) and len(value) == 2 and value[0] == value[1]
-    return value[0] if pair else value
+        yield with_each(scene, ("duty", key), [cut(times(now, f), 1, SHORT) for f in each])
 
 
 def _next_values(stage: StageTable) -> Iterator[tuple[tuple[str, ...], list[Any]]]:

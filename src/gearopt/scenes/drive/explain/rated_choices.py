@@ -6,16 +6,18 @@ from typing import Any
 from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.physics.iso6336.materials import QUALITIES, Material
 from gearopt.scenes.drive.explain.choice_moves import finer_series
-from gearopt.scenes.drive.explain.planets import one_number, ways_of_planets
+from gearopt.scenes.drive.explain.planets import ways_of_planets
 from gearopt.scenes.drive.explain.rated_conflict import Conflict
 from gearopt.scenes.drive.explain.requirements import DISTANCE
 from gearopt.scenes.drive.scene import MOST_STAGES, Scene
-from gearopt.scenes.explaining.numbers import allowed, content, written
+from gearopt.scenes.explaining.moves import with_each, with_values
+from gearopt.scenes.explaining.numbers import Path, allowed, content, put
 from gearopt.scenes.reading.module_series import SERIES, family, series_of
 from gearopt.scenes.reading.toml_writing import toml_text
 
 Works = Callable[[Scene], bool | None]
 Ways = Iterator[tuple[tuple[Change, ...], Scene]]
+SUM = "sum_of_centre_distances"
 GRADES = (1, 2, 3)  # metallurgical ones of AGMA
 
 
@@ -24,21 +26,26 @@ def choices(scene: Scene, known: Conflict, works: Works) -> Iterator[Remedy]:
 
     known: what is in no conflict is not tried. works(scene): whether a changed drive has a design.
     """
-    every: tuple[tuple[str, Callable[[Scene], Ways]], ...] = (
-        ("same_materials", _own_materials),
-        ("materials", _materials),
-        ("material_grade", _with_better_grades),
-        ("coaxial", _not_coaxial),
-        ("sum_of_centre_distances", _of_any_sum),
-        ("", _by_rule),
-        (DISTANCE, _finer_distances),
-        ("", _others),
+    gears, limits, shift = scene.gears, scene.limits, scene.shift
+    chosen, summed = gears.materials or (), limits.sum_of_centre_distances is not None
+    more = [(*chosen, m.name) for m in scene.material if chosen and m.name not in chosen]
+    same, coaxial = [False] * gears.same_materials, [False] * limits.coaxial
+    by_rule = [None] * (shift is not None and shift.pinion_shift is not None)
+    every = (
+        ("same_materials", with_each(scene, ("gears", "same_materials"), same)),
+        ("materials", with_each(scene, ("gears", "materials"), more)),
+        ("material_grade", _with_better_grades(scene)),
+        ("coaxial", with_each(scene, ("limits", "coaxial"), coaxial)),
+        (SUM, with_each(scene, ("limits", SUM), [None] * summed)),
+        ("", with_each(scene, ("shift", "pinion_shift"), by_rule)),
+        (DISTANCE, _finer_distances(scene)),
+        ("", _others(scene)),
     )
     families = {name.split("[")[0] for name in known.names}
     for name, ways in every:
         if name and families and name not in families:
             continue
-        yield from _first(ways(scene), works)
+        yield from _first(ways, works)
     if scene.teeth is not None:
         yield from _stages(scene, works)
 
@@ -58,17 +65,6 @@ def _first(ways: Ways, works: Works) -> Iterator[Remedy]:
             return
 
 
-def _materials(scene: Scene) -> Ways:
-    """Yield the drives whose gears may have one material of the file more."""
-    chosen = scene.gears.materials
-    for material in scene.material if chosen else ():
-        assert chosen
-        if material.name not in chosen:
-            more = (*chosen, material.name)
-            change = Change("gears.materials", toml_text(list(chosen)), toml_text(list(more)), 1.0)
-            yield (change,), _with_gears(scene, {"materials": more})
-
-
 def _with_better_grades(scene: Scene) -> Ways:
     """Yield the drives of the next better grades of steel that all gears share."""
     asked, gears = scene.rating, scene.gears
@@ -81,42 +77,13 @@ def _with_better_grades(scene: Scene) -> Ways:
     if asked.by_iso6336:
         ladders.append(("iso_quality", gears.iso_quality or Material().quality, QUALITIES))
     for more in (1, 2):
-        better: dict[str, Any] = {}
+        better: dict[Path, Any] = {}
         for key, now, ladder in ladders:
             k = min(ladder.index(now) + more, len(ladder) - 1)
-            better |= {key: (getattr(gears, key), ladder[k])} if ladder[k] != now else {}
+            better |= {("gears", key): ladder[k]} if ladder[k] != now else {}
         some = [{key: value} for key, value in better.items()]
         for update in [*some, better] if len(some) > 1 else some:
-            changes = tuple(
-                Change(f"gears.{key}", "" if was is None else toml_text(was), toml_text(new), 1.0)
-                for key, (was, new) in update.items()
-            )
-            yield changes, _with_gears(scene, {key: new for key, (_, new) in update.items()})
-
-
-def _not_coaxial(scene: Scene) -> Ways:
-    """Yield the drive whose stages need not have one centre distance."""
-    if scene.limits.coaxial:
-        yield (Change("limits.coaxial", "true", "false", 1.0),), _limited(scene, {"coaxial": False})
-
-
-def _of_any_sum(scene: Scene) -> Ways:
-    """Yield the drive whose centre distances may have any sum."""
-    now = scene.limits.sum_of_centre_distances
-    if now is not None:
-        key = "sum_of_centre_distances"
-        was = toml_text(written(now, ("limits", key)))
-        yield (Change(f"limits.{key}", was, "", 1.0),), _limited(scene, {key: None})
-
-
-def _by_rule(scene: Scene) -> Ways:
-    """Yield the drive whose profile shifts are those of a rule."""
-    shift = scene.shift
-    if shift is not None and shift.pinion_shift is not None:
-        was = toml_text(written(shift.pinion_shift, ("shift", "pinion_shift")))
-        other = shift.model_copy(update={"pinion_shift": None})
-        change = Change("shift.pinion_shift", was, "", 1.0)
-        yield (change,), scene.model_copy(update={"shift": other})
+            yield with_values(scene, update)
 
 
 def _finer_distances(scene: Scene) -> Ways:
@@ -126,24 +93,7 @@ def _finer_distances(scene: Scene) -> Ways:
     alone = [(k,) for k in finer] if not scene.limits.coaxial else []
     for places in [*alone, tuple(finer)] if len(finer) > 1 else [tuple(finer)][: len(finer)]:
         for step in range(min(len(finer[k]) for k in places)):
-            changes, stages = [], list(scene.stage)
-            for k in places:
-                was, new = stages[k].centre_distance, finer[k][step]
-                old, write = (toml_text(written(one, ("stage", k, DISTANCE))) for one in (was, new))
-                changes.append(Change(f"stage[{k + 1}].{DISTANCE}", old, write, 1.0))
-                stages[k] = stages[k].model_copy(update={DISTANCE: new})
-            yield tuple(changes), scene.model_copy(update={"stage": tuple(stages)})
-
-
-def _limited(scene: Scene, update: dict[str, Any]) -> Scene:
-    return scene.model_copy(update={"limits": scene.limits.model_copy(update=update)})
-
-
-def _own_materials(scene: Scene) -> Ways:
-    """Yield the drive with materials of every stage's own in place of the same for all."""
-    if scene.gears.same_materials:
-        change = Change("gears.same_materials", "true", "false", 1.0)
-        yield (change,), _with_gears(scene, {"same_materials": False})
+            yield with_values(scene, {("stage", k, DISTANCE): finer[k][step] for k in places})
 
 
 def _others(scene: Scene) -> Ways:
@@ -151,16 +101,12 @@ def _others(scene: Scene) -> Ways:
     teeth = scene.teeth
     if teeth is None:
         return
-    if teeth.coprime:
-        other = teeth.model_copy(update={"coprime": False})
-        change = Change("teeth.coprime", "true", "false", 1.0)
-        yield (change,), scene.model_copy(update={"teeth": other})
+    yield from with_each(scene, ("teeth", "coprime"), [False] * teeth.coprime)
     was = toml_text(series_of(teeth.modules) or [str(m) for m in teeth.modules])
     for name in family(teeth.modules):
         if not set(SERIES[name]) <= set(teeth.modules):
-            other = teeth.model_copy(update={"modules": SERIES[name]})
             change = Change("teeth.modules", was, toml_text(name), 1.0)
-            yield (change,), scene.model_copy(update={"teeth": other})
+            yield (change,), put(scene, ("teeth", "modules"), SERIES[name])
 
 
 def _stages(scene: Scene, works: Works) -> Iterator[Remedy]:
@@ -189,14 +135,14 @@ def _of_stages(scene: Scene, n: int) -> tuple[tuple[str, str, str], Scene] | Non
     if n < high or scene.stages is not None:  # else two places are to be written
         return None
     last = scene.stage[-1]
-    write = toml_text({key: one_number(value) for key, value in content(last).items()})
+    write = toml_text({key: _one_number(value) for key, value in content(last).items()})
     return (f"stage[{n}]", "", write), scene.model_copy(update={"stage": (*scene.stage, last)})
 
 
-def _with_gears(scene: Scene, update: dict[str, Any]) -> Scene:
-    """Return the drive with keys of all its gears changed, as a file that gives them."""
-    gears = scene.gears.model_copy(update=update)
-    return scene.model_copy(update={"gears": gears})
+def _one_number(value: Any) -> Any:
+    """A range of equal ends as one number."""
+    pair = isinstance(value, list) and len(value) == 2 and value[0] == value[1]
+    return value[0] if pair else value
 
 
 def _gears(scene: Scene) -> list[Any]:
