@@ -34,16 +34,19 @@ RATIOS = "1.02", "1.05", "1.1", "1.15", "1.2", "1.3", "1.5", "2"  # by which rat
 STEPS, TIMES = 12, (1.1, 1.25, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)  # teeth and diameters that are tried
 
 
+def ends_of(name: str, low: Any, high: Any, least: int = 0) -> list[str]:
+    """Names of what a range asks: one number, or its ends."""
+    if low == high:
+        return [name]
+    return [f"{name}_low"] * (low > least) + [f"{name}_high"] * (high is not None)
+
+
 def of_planets(stage: Stage) -> Iterator[str]:
     """Yield what a stage asks of its teeth; number of planets and reductions are given."""
     way: Planets = stage.options[0].planets
     for member in MEMBERS if way.count else MEMBERS[::2]:
         low, high = getattr(way, member)
-        if low == high:
-            yield f"{member}_teeth"
-        else:
-            yield from [f"{member}_teeth_low"] * (low > 1)
-            yield from [f"{member}_teeth_high"] * (high < LARGE)
+        yield from ends_of(f"{member}_teeth", low, high if high < LARGE else None, least=1)
     for name, (key, free) in FREE.items():
         if (way.count or name == "wheel_diameter") and getattr(way, key) != free:
             yield name

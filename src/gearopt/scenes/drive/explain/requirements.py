@@ -18,10 +18,10 @@ from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.physics.iso6336.materials import QUALITIES
 from gearopt.scenes.drive.driving import trains
-from gearopt.scenes.drive.explain.planets import OF_PLANETS, of_planets, without_planets
+from gearopt.scenes.drive.explain.planets import OF_PLANETS, ends_of, of_planets, without_planets
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.drive import StageTable
-from gearopt.scenes.explaining.numbers import allowed, times
+from gearopt.scenes.explaining.numbers import allowed, put, times
 from gearopt.scenes.reading.module_series import SERIES, family
 
 Dropped = frozenset[str]
@@ -114,9 +114,9 @@ def _of_stage(scene: Scene, own: StageTable, stage: Stage) -> Iterator[str]:
     if stage.planetary:
         yield from of_planets(stage)
     else:
-        yield from _ends("pinion_teeth", *stage.pinion_teeth)
-        yield from _ends("wheel_teeth", stage.wheel_teeth[0], stage.wheel_teeth[1], least=1)
-    yield from _ends("stage_ratio", *stage.ratio, least=1)
+        yield from ends_of("pinion_teeth", *stage.pinion_teeth)
+        yield from ends_of("wheel_teeth", stage.wheel_teeth[0], stage.wheel_teeth[1], least=1)
+    yield from ends_of("stage_ratio", *stage.ratio, least=1)
     face = stage.face_width
     if face.fixed is not None:
         yield "face_width"
@@ -134,23 +134,15 @@ def _of_stage(scene: Scene, own: StageTable, stage: Stage) -> Iterator[str]:
     yield from [DISTANCE] * (stage.toothing.working_distance is not None)
 
 
-def _ends(name: str, low: Any, high: Any, least: int = 0) -> list[str]:
-    if low == high:
-        return [name]
-    return [f"{name}_low"] * (low > least) + [f"{name}_high"] * (high is not None)
-
-
 def without(scene: Scene, dropped: Dropped) -> tuple[Train, ...]:
     """Drives of every number of stages without the requirements dropped."""
     for name, changed in (("materials", _with_materials), ("material_grade", _with_grades)):
         scene = changed(scene) if name in dropped else scene
     scene = _short_lived(scene) if "life" in dropped else scene
     if "same_materials" in dropped:
-        gears = scene.gears.model_copy(update={"same_materials": False})
-        scene = scene.model_copy(update={"gears": gears})
-    if gone := {name: None for name in OF_DISTANCES if name in dropped}:
-        limits = scene.limits.model_copy(update=gone)
-        scene = scene.model_copy(update={"limits": limits})
+        scene = put(scene, ("gears", "same_materials"), False)
+    for name in dropped.intersection(OF_DISTANCES):
+        scene = put(scene, ("limits", name), None)
     each = (train for count in scene.counts for train in trains(scene.held(count)))
     return tuple(_without(scene, train, dropped) for train in each)
 
@@ -334,5 +326,5 @@ def _short_lived(scene: Scene) -> Scene:
     asked = scene.rating
     assert asked
     key = "life" if asked.life is not None else "input_revolutions"
-    rating = asked.model_copy(update={key: times(getattr(asked, key), LIFE)})
-    return scene.model_copy(update={"rating": rating})
+    other: Scene = put(scene, ("rating", key), times(getattr(asked, key), LIFE))
+    return other
