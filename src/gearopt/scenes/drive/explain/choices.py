@@ -1,7 +1,7 @@
 """Remedies that move no limit: the nearest ratio, a tolerance, switches of [teeth]."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from decimal import Context, Decimal
 from fractions import Fraction
@@ -17,13 +17,13 @@ from gearopt.scenes.drive.explain.moves import inherited
 from gearopt.scenes.drive.explain.tried import Case, any_possible
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import as_remedy, least
-from gearopt.scenes.explaining.moves import DUTY, Move, changed
+from gearopt.scenes.explaining.moves import DUTY, Move, changed, with_each
 from gearopt.scenes.explaining.numbers import SHORT, STEP_FROM_ZERO, allowed, eased, put, written
 from gearopt.scenes.reading.module_series import SERIES, family, series_of
 from gearopt.scenes.reading.toml_writing import toml_text
 from gearopt.units import Quantity
 
-TOLERANCE = ("duty", "ratio_tolerance")
+TOLERANCE, MODULES = ("duty", "ratio_tolerance"), ("teeth", "modules")
 WIDEST = (
     Fraction(1, 2),
     Fraction(999, 1000),
@@ -164,27 +164,20 @@ def switches(case: Case) -> Iterator[Remedy]:
     """Yield switches of [teeth] that suffice alone: not hunting, one module more, both series."""
     teeth = case.scene.teeth
     assert teeth is not None
-    ways: list[tuple[str, str, str, dict[str, Any]]] = []
-    if teeth.coprime:
-        ways.append(("coprime", "true", "false", {"coprime": False}))
     named, widest = series_of(teeth.modules), family(teeth.modules)[-1]
-    both = SERIES[widest]
-    if not named:
-        ways += [
-            ("modules", _listed(teeth.modules), _listed(more), {"modules": more})
-            for more in _one_more(teeth.modules)
-        ]
-    if not set(both) <= set(teeth.modules):
-        was = f'"{named}"' if named else _listed(teeth.modules)
-        ways.append(("modules", was, f'"{widest}"', {"modules": both}))
+    ways = [*with_each(case.scene, ("teeth", "coprime"), [False] * teeth.coprime)]
+    ways += with_each(case.scene, MODULES, () if named else _one_more(teeth.modules))
+    if not {*SERIES[widest]} <= {*teeth.modules}:
+        was = toml_text(named or written(teeth.modules, MODULES))
+        change = Change("teeth.modules", was, toml_text(widest), 1.0)
+        ways.append(((change,), put(case.scene, MODULES, SERIES[widest])))
     done = set()
-    for field, was, write, update in ways:
-        kind = (field, write.startswith("["))
-        other = case.scene.model_copy(update={"teeth": teeth.model_copy(update=update)})
+    for changes, other in ways:
+        field = changes[0].key.removeprefix("teeth.")
+        kind = (field, changes[0].write.startswith("["))
         if kind not in done and any_possible(case, trains(other)):
             done.add(kind)
-            change = Change(f"teeth.{field}", was, write, 1.0)
-            yield Remedy("choice", field, (change,), 1.0, None, {"with": "feasible"})
+            yield Remedy("choice", field, changes, 1.0, None, {"with": "feasible"})
 
 
 def _one_more(modules: tuple[Quantity, ...]) -> list[tuple[Quantity, ...]]:
@@ -200,7 +193,3 @@ def _one_more(modules: tuple[Quantity, ...]) -> list[tuple[Quantity, ...]]:
         new = [m for m in SERIES[name] if m.exact[0] not in sizes and m not in added]
         added += sorted(new, key=far)
     return [tuple(sorted((*modules, m), key=lambda m: m.number)) for m in added]
-
-
-def _listed(modules: Sequence[Quantity]) -> str:
-    return toml_text([written(m, ("teeth", "modules")) for m in modules])
