@@ -81,11 +81,9 @@ def _of_cutter(member: str, gear: Gear) -> list[Flaw]:
     tip = cutter_tip(gear)
     if not math.isfinite(tip.distance):
         text = f"The cutter has no centre distance with the {member}: the shifts are too large."
-    elif not tip.angle >= 0.0:
-        text = f"The tips of the cutter of the {member} have no room for their rounds."
-    else:
-        return []
-    return [Flaw("pointed tool" if math.isfinite(tip.distance) else "no cut", text, True)]
+        return [Flaw("no cut", text, True)]
+    text = f"The tips of the cutter of the {member} have no room for their rounds."
+    return [] if tip.angle >= 0.0 else [Flaw("pointed tool", text, True)]
 
 
 def _of_gear(member: str, gear: Gear) -> list[Flaw]:
@@ -95,17 +93,14 @@ def _of_gear(member: str, gear: Gear) -> list[Flaw]:
         return of_gear
     if gear.cutter is None and tool_tip(gear).half_width < 0.0:
         most = float(largest_tip_radius(gear.rack.pressure_angle, gear.rack.dedendum))
-        of_gear.append(
-            Flaw(
-                "pointed tool",
-                f"The tool of the {member} has no room for a tip radius of "
-                f"{gear.rack.tip_radius:.4g} m_n: at most {most:.4g} make one full round."
-                if most > 0.0
-                else f"The flanks of the tool of the {member} meet before its addendum of "
-                f"{gear.rack.dedendum:.4g} m_n.",
-                not has_tip(gear),
-            )
+        text = (
+            f"The tool of the {member} has no room for a tip radius of "
+            f"{gear.rack.tip_radius:.4g} m_n: at most {most:.4g} make one full round."
+            if most > 0.0
+            else f"The flanks of the tool of the {member} meet before its addendum of "
+            f"{gear.rack.dedendum:.4g} m_n."
         )
+        of_gear.append(Flaw("pointed tool", text, not has_tip(gear)))
     if signed(gear.root_diameter, gear.teeth) <= 0.0:
         of_gear.append(Flaw("no root", f"The root circle of the {member} has no diameter.", True))
         return of_gear
@@ -203,7 +198,7 @@ def _backlash(pair: GearPair, of: str) -> list[Flaw]:
 
 
 def shifts_at(pair: GearPair) -> float:
-    """Return x1 + x2 of nominal teeth that have no backlash at the pair's centre distance."""
+    """Sum x1 + x2 of nominal teeth that have no backlash at the pair's centre distance."""
     first, teeth = pair.pinion, pair.pinion_teeth + pair.wheel_teeth
     angles = first.rack.pressure_angle, first.transverse_pressure_angle
     return float(shift_sum(pair.working_angle, teeth, *angles))

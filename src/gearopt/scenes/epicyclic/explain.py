@@ -20,7 +20,7 @@ from gearopt.formulations.epicyclic.request import (
     TOLERANCE,
     Request,
 )
-from gearopt.formulations.epicyclic.search import best
+from gearopt.formulations.epicyclic.search import Key, best
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Remedies
 from gearopt.optimise.result import Result
@@ -75,20 +75,21 @@ def conflict(request: Request, clock: Clock) -> tuple[tuple[str, ...], tuple[str
     return (tuple(kept) or (COAXIAL,)), tuple(unsure)
 
 
+def _nearest(request: Request, goal: str, limit: str, clock: Clock) -> Key | None:
+    """The best train for a goal without a limit, as `Best` has it."""
+    return best(replace(request, goal=goal, without=(limit,)), Clock(clock.left)).key
+
+
 def _moves(scene: Scene, clock: Clock) -> Iterator[Move]:
     request, train, limits = scene.request(), scene.train, scene.limits
-    if limits.ratio_tolerance is not None and request.ratio is not None:
-        free = replace(request, goal=ERROR, without=(TOLERANCE,))
-        if (key := best(free, Clock(clock.left)).key) is not None:
-            tolerance = cut(key[0], 1, DIGITS)
-            if tolerance > 0:
-                place = ("limits", "ratio_tolerance")
-                yield Move(place, 1).to_values(limits.ratio_tolerance, [tolerance])
-            ratio = free.exact_ratio(key[2])
-            yield Move(("train", "ratio"), 1, DUTY).to_values(request.ratio, [ratio])
+    if limits.ratio_tolerance is not None and (key := _nearest(request, ERROR, TOLERANCE, clock)):
+        if (tolerance := cut(key[0], 1, DIGITS)) > 0:
+            place = ("limits", "ratio_tolerance")
+            yield Move(place, 1).to_values(limits.ratio_tolerance, [tolerance])
+        ratio = request.exact_ratio(key[2])
+        yield Move(("train", "ratio"), 1, DUTY).to_values(request.ratio, [ratio])
     if limits.minimum_efficiency is not None:
-        free = replace(request, goal=LOSS, without=(EFFICIENCY,))
-        key = best(free, Clock(clock.left)).key
+        key = _nearest(request, LOSS, EFFICIENCY, clock)
         if key is not None and (eta := cut(Fraction(1 - key[0]), -1, DIGITS)) > 0:
             place = ("limits", "minimum_efficiency")
             yield Move(place, -1).to_values(limits.minimum_efficiency, [eta])
