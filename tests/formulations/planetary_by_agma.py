@@ -3,13 +3,14 @@
 from dataclasses import replace
 
 import planetary_drives as own
+from mesh_loads import turned, with_ring, with_sun
 from rated_drives import agma
 
 from gearopt.formulations.drive.planetary import PLANET, SUN, InPlanetaryMesh
 from gearopt.physics.agma.rating import rate
 from gearopt.physics.agma.rating_factors import Practice, Steel
 from gearopt.physics.gears import GearPair
-from gearopt.physics.planetary.loads import mesh_load_factor, turned, with_ring, with_sun
+from gearopt.physics.planetary.loads import mesh_load_factor
 from gearopt.physics.rating import Operation
 
 HARD = Steel("carburised", 2)

@@ -77,22 +77,22 @@ def with_gears_named(stages: tuple[StageTable, ...]) -> tuple[StageTable, ...]:
 
     Keys that mean nothing of a type are refused.
     """
-    made = []
-    for k, own in enumerate(stages):
-        each = [meaningless(kind) for kind in own.types]
+    tables = []
+    for k, stage in enumerate(stages):
+        each = [meaningless(kind) for kind in stage.types]
         wrong = [name for name in each[0] if all(name in names for names in each)]
-        if name := next((name for name in wrong if name in own.model_fields_set), None):
-            kinds = " or ".join(f'"{kind}"' for kind in own.types)
-            rule = f"needs {_kinds(name)}" if PARALLEL in own.types else f"is not of {kinds}"
+        if name := next((name for name in wrong if name in stage.model_fields_set), None):
+            kinds = " or ".join(f'"{kind}"' for kind in stage.types)
+            rule = f"needs {_kinds(name)}" if PARALLEL in stage.types else f"is not of {kinds}"
             raise refuse(rule, at=(k, name), action="remove")
-        for name in of_meshes(own.given_iso6336) if own.type != PLANETARY else ():
+        for name in of_meshes(stage.given_iso6336) if stage.type != PLANETARY else ():
             rule = 'has values of two meshes, which a stage of type = "planetary" has'
             raise refuse(rule, at=(k, "given_iso6336", name), action="remove")
-        if own.type == PLANETARY and "K_gamma" in own.given_iso6336.factors():
+        if stage.type == PLANETARY and "K_gamma" in stage.given_iso6336.factors():
             tell = "Write mesh_load_factor in the [[stage]]"
             raise refuse("has another name here", tell, (k, "given_iso6336", "K_gamma"), "tell")
-        made.append(own.with_gears_named())
-    return tuple(made)
+        tables.append(stage.with_gears_named())
+    return tuple(tables)
 
 
 def meaningless(kind: str) -> tuple[str, ...]:
@@ -107,14 +107,14 @@ def _kinds(name: str) -> str:
     return both
 
 
-def inner(own: StageTable) -> StageTable:
+def inner(stage: StageTable) -> StageTable:
     """A planetary stage as its mesh of planet and ring."""
-    return copied(own, {"pinion": bent(own.planet), "wheel": gear_of(own.ring)})
+    return copied(stage, {"pinion": bent(stage.planet), "wheel": gear_of(stage.ring)})
 
 
 def every_mesh(stages: Sequence[StageTable]) -> tuple[StageTable, ...]:
     """Tables of stages, and those of planet and ring beside the ones of sun and planet."""
-    rings = (inner(own) for own in stages if own.type == PLANETARY and own.as_mesh is None)
+    rings = (inner(stage) for stage in stages if stage.type == PLANETARY and stage.as_mesh is None)
     return (*stages, *rings)
 
 
@@ -124,18 +124,18 @@ def renamed(scene: "Scene", wrong: PydanticCustomError, names: Any = None) -> Py
     place = tuple(context.get("at", ()))
     if len(place) > 2 and place[0] == "stage" and place[1] < len(scene.stage):
         kind = scene.stage[place[1]].type
-        own = names if names and kind == PLANETARY else NAMES.get(kind, {})
-        own = own | ({"wheel_teeth": "ring_teeth"} if kind in NAMES else {})
-        context["at"] = (*place[:2], own.get(place[2], place[2]), *place[3:])
+        called = names if names and kind == PLANETARY else NAMES.get(kind, {})
+        called = called | ({"wheel_teeth": "ring_teeth"} if kind in NAMES else {})
+        context["at"] = (*place[:2], called.get(place[2], place[2]), *place[3:])
     return PydanticCustomError("gearopt", "{rule}", context)
 
 
 def check_rings(scene: "Scene", rating: RatingTable) -> None:
     """Check the materials of planets and rings, as those of pairs are."""
-    if not any(own.type == PLANETARY for own in scene.stage):
+    if not any(stage.type == PLANETARY for stage in scene.stage):
         return
-    stages = [inner(own) if own.type == PLANETARY else own for own in scene.stage]
-    places = [(("stage", k), own) for k, own in enumerate(stages)]
+    stages = [inner(stage) if stage.type == PLANETARY else stage for stage in scene.stage]
+    places = [(("stage", k), stage) for k, stage in enumerate(stages)]
     try:
         check_materials(places, scene.gears, scene.material)
         check_rated(rating, scene.gears, stages, scene.load, scene.material)
@@ -147,142 +147,147 @@ def check_rings(scene: "Scene", rating: RatingTable) -> None:
 
 def check_planetary(scene: "Scene") -> None:
     """Refuse what does not go together with planets or a ring."""
-    for k, own in enumerate(scene.stage):
-        if not own.epicyclic:
+    for k, stage in enumerate(scene.stage):
+        if not stage.epicyclic:
             continue
-        if wrong := next(against(scene, own, k), None):
+        if wrong := next(against(scene, stage, k), None):
             raise wrong
-        if scene.to_size and not scene.given and (wrong := lacking(scene, own)):
+        if scene.to_size and not scene.given and (wrong := lacking(scene, stage)):
             raise wrong
         for name in NOT_YET:
-            if getattr(own, name):
-                rule = f'is not of type = "{own.type}"'
+            if getattr(stage, name):
+                rule = f'is not of type = "{stage.type}"'
                 raise refuse(rule, at=("stage", k, name), action="remove")
-        _check_gears(scene, own, k)
-        _check_teeth(scene, own, k)
-        _check_given(scene, own, k)
+        _check_gears(scene, stage, k)
+        _check_teeth(scene, stage, k)
+        _check_given(scene, stage, k)
 
 
-def _check_gears(scene: "Scene", own: StageTable, k: int) -> None:
+def _check_gears(scene: "Scene", stage: StageTable, k: int) -> None:
     """Refuse keys of gears that a stage with a ring sets, or does not have."""
     for name in OF_GEAR:
-        for place, table in ((("gears",), scene.gears), (("stage", k, "pinion"), own.pinion)):
-            written = place[0] == "gears" or own.type == INTERNAL
+        for place, table in ((("gears",), scene.gears), (("stage", k, "pinion"), stage.pinion)):
+            written = place[0] == "gears" or stage.type == INTERNAL
             if written and getattr(table, name, None) is not None:
-                rule = f'does not go together with type = "{own.type}"'
+                rule = f'does not go together with type = "{stage.type}"'
                 raise refuse(rule, at=(*place, name), action="remove")
-    for member in MEMBERS[own.type]:
-        thinner = getattr(own, member).thickness_allowance
+    for member in MEMBERS[stage.type]:
+        thinner = getattr(stage, member).thickness_allowance
         if thinner is not None and (scene.to_size or thinner.number > 0):
             rule = "is for gears that are given, and below zero: teeth are thinned"
             raise refuse(rule, at=("stage", k, member, "thickness_allowance"), action="remove")
-    if own.ring.outside_diameter is not None and gear_of(own.ring).rim_over_module is not None:
+    if stage.ring.outside_diameter is not None and gear_of(stage.ring).rim_over_module is not None:
         rule = "conflicts with outside_diameter; one is enough"
         raise refuse(rule, at=("stage", k, "ring", "rim_over_module"), action="remove")
-    of_all = scene.rating.iso6336.given if scene.rating else own.given_iso6336
-    given = of_all.factors() | own.given_iso6336.factors()
+    of_all = scene.rating.iso6336.given if scene.rating else stage.given_iso6336
+    given = of_all.factors() | stage.given_iso6336.factors()
     iso = "Y_B" not in given and (scene.rating is None or scene.rating.standard != "agma")
-    rim = gear_of(own.ring).rim_over_module
+    rim = gear_of(stage.ring).rim_over_module
     if iso and rim is not None and rim <= THIN_RING:
         rule = f"is {THIN_RING:g} or less, for which ISO 6336 has no Y_B of rings"
         raise refuse(rule, 3.5, ("stage", k, "ring", "rim_over_module"))
-    most = own.ring_teeth or scene.limits.wheel_teeth
-    if own.ring.cutter_teeth is not None and most and most[1] and most[1] <= own.ring.cutter_teeth:
+    most = stage.ring_teeth or scene.limits.wheel_teeth
+    if (
+        stage.ring.cutter_teeth is not None
+        and most
+        and most[1]
+        and most[1] <= stage.ring.cutter_teeth
+    ):
         rule = f"is no less than the ring has, {most[1]}: the cutter runs within it"
         raise refuse(rule, most[1] // 3, ("stage", k, "ring", "cutter_teeth"), "sample")
-    if own.ring.cutter_teeth is None:
+    if stage.ring.cutter_teeth is None:
         for name in ("cutter_profile_shift", "cutter_addendum", "cutter_tip_radius"):
-            if getattr(own.ring, name) is not None:
+            if getattr(stage.ring, name) is not None:
                 rule = "needs cutter_teeth, of the cutter that shapes the ring"
                 raise refuse(rule, at=("stage", k, "ring", name), action="remove")
     sized = scene.to_size and not scene.given
-    planet = with_shared(own.wheel if own.type == PLANETARY else own.pinion, scene.gears)
-    if sized and planet.tool_protuberance and gear_of(own.ring).tip_alteration is None:
+    planet = with_shared(stage.wheel if stage.type == PLANETARY else stage.pinion, scene.gears)
+    if sized and planet.tool_protuberance and gear_of(stage.ring).tip_alteration is None:
         rule = "is missing: beside a tool_protuberance of its mates it has no rule"
         raise refuse(rule, -0.1, ("stage", k, "ring", "tip_alteration"), "sample")
-    if sized and own.type == PLANETARY and gear_of(own.ring).profile_shift is not None:
+    if sized and stage.type == PLANETARY and gear_of(stage.ring).profile_shift is not None:
         rule = "follows from the distance of sun and planet"
         raise refuse(rule, at=("stage", k, "ring", "profile_shift"), action="remove")
 
 
-def _check_given(scene: "Scene", own: StageTable, k: int) -> None:
+def _check_given(scene: "Scene", stage: StageTable, k: int) -> None:
     """Refuse factors of AGMA that are those of one mesh, of stages that have two."""
     assert scene.rating
-    tables = (("stage", k, "given"), own.given), (("rating", "given"), scene.rating.given)
-    for place, table in tables if own.type == PLANETARY else ():
+    tables = (("stage", k, "given"), stage.given), (("rating", "given"), scene.rating.given)
+    for place, table in tables if stage.type == PLANETARY else ():
         for symbol in OF_MESH:
             if getattr(table, symbol) is not None:
                 rule = "is of one mesh: sun and planet, and planet and ring have their own"
                 raise refuse(rule, at=(*place, symbol), action="remove")
 
 
-def _check_teeth(scene: "Scene", own: StageTable, k: int) -> None:
+def _check_teeth(scene: "Scene", stage: StageTable, k: int) -> None:
     """Refuse numbers of planets without K_gamma, and reductions that leave no whole teeth."""
-    if own.mesh_load_factor is None:
-        for count in own.counts if own.type == PLANETARY else ():
+    if stage.mesh_load_factor is None:
+        for count in stage.counts if stage.type == PLANETARY else ():
             if count and count not in SHARING_RULES[SHARING].values:
                 rule = f"is missing: {count} planets have no K_gamma by default"
                 raise refuse(rule, 1.1, ("stage", k, "mesh_load_factor"), "sample")
         of_all = scene.rating and scene.rating.iso6336.given.factors().get("K_gamma")
-        if own.type == PLANETARY and of_all:
+        if stage.type == PLANETARY and of_all:
             rule = "is missing beside K_gamma of [rating.iso6336.given], which is not of planets"
             raise refuse(rule, of_all, ("stage", k, "mesh_load_factor"), "sample")
-    if own.equally_spaced is False and own.mesh_order in ("simultaneous", "sequential"):
+    if stage.equally_spaced is False and stage.mesh_order in ("simultaneous", "sequential"):
         rule = "is of equally spaced planets"
         raise refuse(rule, at=("stage", k, "mesh_order"), action="remove")
-    for step in own.planet_teeth_reduction or ():
+    for step in stage.planet_teeth_reduction or ():
         if (2 * step).denominator != 1:
             rule = "has a value that is no multiple of 0.5"
             raise refuse(rule, [0, 0.5, 1], ("stage", k, "planet_teeth_reduction"), "sample")
-    if own.held == "sun" and own.ring_teeth is None and not scene.limits.wheel_teeth:
+    if stage.held == "sun" and stage.ring_teeth is None and not scene.limits.wheel_teeth:
         rule = "is missing: a ring that drives needs a range"
         raise refuse(rule, [60, 140], ("stage", k, "ring_teeth"), "sample")
-    if own.held == "sun" and not (own.face_width or own.face_width_over_diameter):
+    if stage.held == "sun" and not (stage.face_width or stage.face_width_over_diameter):
         rule = "is missing: over the ring's diameter, where the sun is held; [gears] has the sun's"
         raise refuse(rule, [0.1, 0.3], ("stage", k, "face_width_over_diameter"), "sample")
 
 
-def cuttings(scene: "Scene", own: StageTable) -> tuple[Cutting, ...]:
+def cuttings(scene: "Scene", stage: StageTable) -> tuple[Cutting, ...]:
     """Ways to cut the gears of a stage: by the sums of profile shifts that are given."""
-    first_two = (own.pinion, own.pinion if own.type == INTERNAL else own.wheel)
-    tables = [with_shared(gear, scene.gears) for gear in (*first_two, gear_of(own.ring))]
-    pressure = (own.pressure_angle or scene.gears.pressure_angle).value
+    first_two = (stage.pinion, stage.pinion if stage.type == INTERNAL else stage.wheel)
+    tables = [with_shared(gear, scene.gears) for gear in (*first_two, gear_of(stage.ring))]
+    pressure = (stage.pressure_angle or scene.gears.pressure_angle).value
     first, second, third = (rack(table, pressure) for table in tables)
     cutter = None
-    if own.ring.cutter_teeth is not None:
+    if stage.ring.cutter_teeth is not None:
         cutter = Cutter(
-            float(own.ring.cutter_teeth),
-            float(own.ring.cutter_profile_shift or 0),
-            float(own.ring.cutter_addendum or third.dedendum),
-            float(own.ring.cutter_tip_radius or 0),
+            float(stage.ring.cutter_teeth),
+            float(stage.ring.cutter_profile_shift or 0),
+            float(stage.ring.cutter_addendum or third.dedendum),
+            float(stage.ring.cutter_tip_radius or 0),
         )
-    outside = own.ring.outside_diameter
+    outside = stage.ring.outside_diameter
     x = [_number(table.profile_shift) for table in tables]
     tips = [_number(table.tip_alteration) for table in tables]
-    width = own.face_width.value if own.face_width else None
+    width = stage.face_width.value if stage.face_width else None
     thinner = [t.thickness_allowance.value if t.thickness_allowance else 0.0 for t in tables]
-    made = Cutting(
-        scene.helix_angles(own)[0].value,
+    cutting = Cutting(
+        scene.helix_angles(stage)[0].value,
         (first, second, third),
         cutter,
         (x[0], x[1], x[2]),
         None,
         (tips[0], tips[1], tips[2]),
-        values_of(own.centre_distance)[0].value if own.centre_distance is not None else None,
+        values_of(stage.centre_distance)[0].value if stage.centre_distance is not None else None,
         float(tables[2].rim_over_module or RIM),
         outside.value if outside else None,
         (blank(tables[0], width), blank(tables[1], width)),
         (thinner[0], thinner[1], thinner[2]),
     )
     shift = scene.shift or ShiftTable()
-    if own.type == INTERNAL or None not in made.shifts[:2]:
-        return (made,)
+    if stage.type == INTERNAL or None not in cutting.shifts[:2]:
+        return (cutting,)
     sums = [float(total) for total in values_of(shift.sum)] if shift.sum is not None else [None]
     starts = [x[0]]
     if shift.pinion_shift is not None and x[0] is None:
         starts = [float(start) for start in values_of(shift.pinion_shift)]
     return tuple(
-        replace(made, shift_sum=total, shifts=(start, x[1], x[2]))
+        replace(cutting, shift_sum=total, shifts=(start, x[1], x[2]))
         for total, start in product(sums, starts)
     )
 
@@ -291,31 +296,31 @@ def _number(value: Fraction | None) -> float | None:
     return None if value is None else float(value)
 
 
-def ways(scene: "Scene", own: StageTable) -> Iterator[Planets]:
+def ways(scene: "Scene", stage: StageTable) -> Iterator[Planets]:
     """Ways of making a stage, without its materials."""
-    diameter = own.wheel_diameter or scene.limits.wheel_diameter
+    diameter = stage.wheel_diameter or scene.limits.wheel_diameter
     usual = scene.limits.wheel_teeth or (1, None)
-    sun = own.pinion_teeth or scene.limits.pinion_teeth
-    reductions = own.planet_teeth_reduction or REDUCTIONS
-    fewer = [0] if own.type == INTERNAL else [int(2 * step) for step in reductions]
-    each = own.sun_teeth, own.planet_teeth, own.ring_teeth
+    sun = stage.pinion_teeth or scene.limits.pinion_teeth
+    reductions = stage.planet_teeth_reduction or REDUCTIONS
+    fewer = [0] if stage.type == INTERNAL else [int(2 * step) for step in reductions]
+    each = stage.sun_teeth, stage.planet_teeth, stage.ring_teeth
     if all(ends is not None and ends[0] == ends[1] for ends in each):
         z_s, z_p, z_r = (ends[0] for ends in each if ends is not None)
         fewer = [z_r - z_s - 2 * z_p]
-    for cutting, count, less in product(cuttings(scene, own), own.counts, fewer):
+    for cutting, count, less in product(cuttings(scene, stage), stage.counts, fewer):
         yield Planets(
             cutting,
             count,
-            own.held,
+            stage.held,
             less,
             _span(sun),
-            _span(own.planet_teeth or (1, None)),
-            _span(own.ring_teeth or usual),
-            own.equally_spaced is not False,
-            own.mesh_order or "any",
-            Planets.clearance if own.planet_clearance is None else float(own.planet_clearance),
+            _span(stage.planet_teeth or (1, None)),
+            _span(stage.ring_teeth or usual),
+            stage.equally_spaced is not False,
+            stage.mesh_order or "any",
+            Planets.clearance if stage.planet_clearance is None else float(stage.planet_clearance),
             diameter.value if diameter else math.inf,
-            carrier=float(own.carrier_over_face_width or 0),
+            carrier=float(stage.carrier_over_face_width or 0),
         )
 
 
@@ -323,16 +328,16 @@ def _span(ends: tuple[int, int | None]) -> tuple[float, float]:
     return float(ends[0]), LARGE if ends[1] is None else float(ends[1])
 
 
-def stage_with_planets(scene: "Scene", own: StageTable, stage: Stage) -> Stage:
+def stage_with_planets(scene: "Scene", table: StageTable, stage: Stage) -> Stage:
     """The stage whose pair has the ratio of one with planets, or of a pinion in a ring."""
     sun, ring = stage.pinion_teeth, stage.wheel_teeth
     first, second = sun, ring
-    if own.type == PLANETARY and own.held != "carrier":
+    if table.type == PLANETARY and table.held != "carrier":
         most = None if None in (sun[1], ring[1]) else (sun[1] or 0) + (ring[1] or 0)
         second = sun[0] + ring[0], most
-        first = ring if own.held == "sun" else sun
-    angle = scene.helix_angles(own)[0].value
-    pressure = (own.pressure_angle or scene.gears.pressure_angle).value
+        first = ring if table.held == "sun" else sun
+    angle = scene.helix_angles(table)[0].value
+    pressure = (table.pressure_angle or scene.gears.pressure_angle).value
     plain = rack(GearTable(), pressure)
     return replace(
         stage,
@@ -388,52 +393,52 @@ def planet_assumptions(scene: "Scene") -> Iterator[str]:
         )
 
 
-def load_factor(own: StageTable, count: int) -> Fraction:
+def load_factor(stage: StageTable, count: int) -> Fraction:
     """K_gamma of a number of planets."""
-    if own.mesh_load_factor is not None:
-        return own.mesh_load_factor
+    if stage.mesh_load_factor is not None:
+        return stage.mesh_load_factor
     return Fraction(str(mesh_load_factor(count, SHARING)))
 
 
-def meshes(own: StageTable, count: int) -> tuple[StageTable, ...]:
+def meshes(stage: StageTable, count: int) -> tuple[StageTable, ...]:
     """Tables of the meshes of a stage, with their load cycles and K_gamma; count: of planets."""
     if not count:
-        return (own,)
-    given, shared = own.given_iso6336, {"K_gamma": load_factor(own, count)}
+        return (stage,)
+    given, shared = stage.given_iso6336, {"K_gamma": load_factor(stage, count)}
     names = of_meshes(given)
     outer, second = (
         {"given_iso6336": copied(given, {n: getattr(given, n)[k] for n in names} | shared)}
         for k in (0, 1)
     )
-    sun, ring = (copied(gear_of(gear), {"contacts": count}) for gear in (own.sun, own.ring))
-    planet = bent(own.planet)
+    sun, ring = (copied(gear_of(gear), {"contacts": count}) for gear in (stage.sun, stage.ring))
+    planet = bent(stage.planet)
     return (
-        copied(own, outer | {"pinion": sun, "wheel": planet}),
-        copied(own, second | {"pinion": planet, "wheel": ring}),
+        copied(stage, outer | {"pinion": sun, "wheel": planet}),
+        copied(stage, second | {"pinion": planet, "wheel": ring}),
     )
 
 
-def at_once(own: StageTable, count: int, with_ring: bool) -> tuple[float, float] | None:
+def at_once(stage: StageTable, count: int, with_ring: bool) -> tuple[float, float] | None:
     """`Practice.meshes` of a mesh of a stage."""
     if not count:
         return None
-    held = 0.0 if own.held == "ring" else float(count)
-    return (1.0, held) if with_ring else (float(-count if own.held == "sun" else count), 1.0)
+    held = 0.0 if stage.held == "ring" else float(count)
+    return (1.0, held) if with_ring else (float(-count if stage.held == "sun" else count), 1.0)
 
 
-def options(scene: "Scene", own: StageTable) -> tuple[Option, ...]:
+def options(scene: "Scene", stage: StageTable) -> tuple[Option, ...]:
     """Ways of making the gears of a stage, each with the ratings that limit its meshes."""
     assert scene.rating
-    asked, duty = of_stage(scene.rating, own), scene.duty
+    asked, duty = of_stage(scene.rating, stage), scene.duty
     hours, levels = required_hours(asked, duty), loads(asked, duty, scene.load)
     gears = [
         choices(table, scene.gears, scene.material)
-        for table in ((own.pinion, own.wheel) if own.type == INTERNAL else ())
+        for table in ((stage.pinion, stage.wheel) if stage.type == INTERNAL else ())
     ]
-    made = []
+    every = []
     agma = asked.standard != "iso6336"
-    for planets in _by_fewest(scene, own) if agma else ways(scene, own):
-        tables = meshes(own, planets.count)
+    for planets in _by_fewest(scene, stage) if agma else ways(scene, stage):
+        tables = meshes(stage, planets.count)
         if planets.count:
             outer, second = tables
             members = (outer.pinion, outer.wheel, second.wheel)
@@ -448,13 +453,13 @@ def options(scene: "Scene", own: StageTable) -> tuple[Option, ...]:
                 turned = option(asked, tables[0], pairs[0][::-1], hours, levels)
                 standards = turned.standards[0], *each[0].standards[1:]
                 each[0] = replace(each[0], standards=standards)
-            made.append(_combined(own, planets, each, agma))
-    return tuple(made)
+            every.append(_combined(stage, planets, each, agma))
+    return tuple(every)
 
 
-def _by_fewest(scene: "Scene", own: StageTable) -> Iterator[Planets]:
+def _by_fewest(scene: "Scene", stage: StageTable) -> Iterator[Planets]:
     """Ways of making a stage, with the sun as the pinion of its mesh by AGMA and with planets."""
-    for planets in ways(scene, own):
+    for planets in ways(scene, stage):
         if not planets.count:
             yield planets
             continue
@@ -465,7 +470,7 @@ def _by_fewest(scene: "Scene", own: StageTable) -> Iterator[Planets]:
             yield replace(planets, fewest=member)
 
 
-def _combined(own: StageTable, planets: Planets, each: Sequence[Option], agma: bool) -> Option:
+def _combined(stage: StageTable, planets: Planets, each: Sequence[Option], agma: bool) -> Option:
     """One way of making a stage of those of its meshes; agma: AGMA is the first standard."""
     standards: list[Any] = []
     rated_rings: list[Any] = [*each[-1].standards]
@@ -477,7 +482,7 @@ def _combined(own: StageTable, planets: Planets, each: Sequence[Option], agma: b
             rated: Any = standard
             turned = agma and n == 0 and not with_ring and planets.fewest == PLANET
             if n or not agma:
-                at = replace(rated.practice, meshes=at_once(own, planets.count, with_ring))
+                at = replace(rated.practice, meshes=at_once(stage, planets.count, with_ring))
                 rated = replace(rated, practice=at)
             name = words + rated.suffix
             standards.append(InPlanetaryMesh(rated, planets, with_ring, name, turned=turned))

@@ -119,7 +119,7 @@ def _told(scene: Scene, names: Sequence[str]) -> tuple[str, ...]:
     """Names of a conflict; safety factors are those of a peak torque, too, where there is one."""
     peak = scene.rating is not None and scene.rating.static_torque_factor is not None
     tail = "_or_that_at_the_peak_torque" * peak
-    inner = [f"[{k}]" for k, own in enumerate(scene.stage, 1) if own.type == INTERNAL]
+    inner = [f"[{k}]" for k, table in enumerate(scene.stage, 1) if table.type == INTERNAL]
     called = [n.replace("sun", "pinion") if n.endswith((*inner,)) else n for n in names]
     return tuple(f"{name}{tail}" if name in SAFETIES else name for name in called)
 

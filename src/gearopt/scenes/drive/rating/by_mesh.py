@@ -129,23 +129,23 @@ def meshes_by(
     scene: Scene, pairs: tuple[GearPair, ...], standard: Any, names: Materials
 ) -> list[Mesh]:
     """`rated_meshes`; AGMA rates a sun with more teeth than a planet as the wheel."""
-    if not standard.FEWER_FIRST or not any(own.as_mesh for own in scene.stage_tables):
+    if not standard.FEWER_FIRST or not any(table.as_mesh for table in scene.stage_tables):
         return rated_meshes(scene, pairs, standard, names)
     turned, both, materials = with_fewer_first(scene, pairs, names)
     rated = rated_meshes(turned, both, standard, materials)
     rows = zip(rated, pairs, scene.stage_tables, strict=True)
-    return [sun_first(mesh, pair, own.as_mesh) for mesh, pair, own in rows]
+    return [sun_first(mesh, pair, table.as_mesh) for mesh, pair, table in rows]
 
 
 def with_fewer_first(scene: Scene, pairs: tuple[GearPair, ...], names: Materials) -> Meshes:
     """Meshes of a drive in which a sun with more teeth than a planet is the wheel, as by AGMA."""
     tables, both, materials = list(scene.stage_tables), list(pairs), list(names)
-    for k, (own, pair) in enumerate(zip(scene.stage_tables, pairs, strict=True)):
-        mesh = own.as_mesh
-        if mesh is None or own.type != PLANETARY or not 0.0 < pair.ratio < 1.0:
+    for k, (stage, pair) in enumerate(zip(scene.stage_tables, pairs, strict=True)):
+        mesh = stage.as_mesh
+        if mesh is None or stage.type != PLANETARY or not 0.0 < pair.ratio < 1.0:
             continue
         turned = replace(mesh, slower=mesh.slower * float(pair.ratio))
-        swapped = copied(own, {"pinion": own.wheel, "wheel": own.pinion})
+        swapped = copied(stage, {"pinion": stage.wheel, "wheel": stage.pinion})
         tables[k], materials[k] = swapped.rated_as(turned), names[k][::-1]
         both[k] = replace(pair, pinion=pair.wheel, wheel=pair.pinion)
     return scene.model_copy(update={"stage": tuple(tables)}), tuple(both), materials
@@ -193,9 +193,9 @@ def planets_of(scene: Scene, own: StageTable, stage: StageDesign) -> Planets:
     tips = stage.pinion_tip_alteration, stage.wheel_tip_alteration, stage.ring_tip_alteration
     if internal:
         shifts, tips = (shifts[0], *shifts[::2]), (tips[0], *tips[::2])
-    made = cuttings(scene, own)[0]
-    distance = None if made.distance is None else stage.centre_distance_mm
-    cut = replace(made, shifts=shifts, shift_sum=None, tip_alterations=tips, distance=distance)
+    cutting = cuttings(scene, own)[0]
+    distance = None if cutting.distance is None else stage.centre_distance_mm
+    cut = replace(cutting, shifts=shifts, shift_sum=None, tip_alterations=tips, distance=distance)
     if internal or not stage.planets:
         return Planets(cut, 0)
     assert stage.ring_teeth and stage.sun_teeth and stage.planet_teeth
@@ -222,13 +222,13 @@ def given_design(scene: Scene) -> DriveDesign:
     pairs, law, density = tuple(pair for pair, _ in rows), scene.limits.LAW, scene.objective.density
     usual, speed = density.value if density else STEEL_DENSITY, scene.duty.input_speed.value
     asked = scene.duty.total_ratio if scene.duty.asks_ratio else None
-    made = of_pairs(law, pairs, scene.torque, speed, asked, usual, scene.blanks, drivers(scene))
-    each = zip(made.stages, rows, strict=True)
+    design = of_pairs(law, pairs, scene.torque, speed, asked, usual, scene.blanks, drivers(scene))
+    each = zip(design.stages, rows, strict=True)
     stages = tuple(
         stage if option is None else of_planets(law, stage, pair, option, usual)
         for stage, (pair, option) in each
     )
-    return with_planets(made, stages)
+    return with_planets(design, stages)
 
 
 def shared(scene: Scene, row: RatingFactor) -> RatingFactor:
