@@ -35,9 +35,9 @@ def _of_both_kinds(monkeypatch):
     monkeypatch.setattr(brute, "worth", objective_share)
 
 
-def agree(train):
-    """Whether the search proves what every candidate says; the value of the best."""
-    result, _ = run(problem(train))
+def agree(train, posed=None):
+    """Whether the search of a drive, or of how it is posed, proves what every candidate says."""
+    result, _ = run(problem(posed or train))
     best = brute.cheapest(train)
     if result.status == "infeasible":
         assert math.isinf(best)
