@@ -10,6 +10,7 @@ from gearopt.formulations.drive.layout.layout_design import LayoutDesign
 from gearopt.formulations.drive.rating import DriveRating
 from gearopt.formulations.drive.train import STEEL_DENSITY, Train
 from gearopt.formulations.pair.design import PairContact, PairRelief
+from gearopt.formulations.pair.flank_design import FlankContact
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.standard import Option
 from gearopt.frozen import dataclass
@@ -203,6 +204,7 @@ class DriveDesign:
     rating: DriveRating | None = None
     contact: PairContact | None = None
     relief: PairRelief | None = None
+    flank: FlankContact | None = None
 
 
 def drive_design(data: Mapping[str, Any]) -> DriveDesign:

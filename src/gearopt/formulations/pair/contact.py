@@ -52,12 +52,7 @@ class PairMesh:
     ) -> "PairMesh":
         """Return a pair over its cycle; torque [N mm] of the pinion, steps over a base pitch."""
         force = torque / elastic.members[0].base_radius
-        model = LEVELS[level]
-
-        def exact(positions: Any) -> Any:
-            return model.compliance(elastic, positions, force)
-
-        compliance = _interpolated(elastic, level, force) if model.cost > DEAR else exact
+        compliance = compliance_of(elastic, level, force)
         forces = tuple(load * force for load in loads)
         mesh = Mesh.of(cycle(elastic.path, steps), compliance, coupling, forces)
         return cls(elastic, level, compliance, force, tuple(loads), mesh)
@@ -71,6 +66,16 @@ class PairMesh:
     def of_loads(self, loads: Sequence[float]) -> Mesh:
         """Return the mesh at other loads, relative to that of the duty."""
         return replace(self.mesh, loads=tuple(load * self.force for load in loads))
+
+
+def compliance_of(elastic: ElasticPair, level: str, force: float) -> Callable[[Any], Any]:
+    """Return the compliance [mm/N] of a pair of teeth by a level, as a function of positions."""
+    model = LEVELS[level]
+
+    def exact(positions: Any) -> Any:
+        return model.compliance(elastic, positions, force)
+
+    return _interpolated(elastic, level, force) if model.cost > DEAR else exact
 
 
 @lru_cache(maxsize=4)

@@ -22,7 +22,8 @@ from gearopt.scenes.explaining.explanations import by_solving
 from gearopt.scenes.kind import Kind, Trades, examples_in
 from gearopt.scenes.pair import relief as relief_part
 from gearopt.scenes.pair.contact import contact_of, mesh_of
-from gearopt.scenes.pair.notes import contact_assumptions
+from gearopt.scenes.pair.flank import flank_contact_of, flank_mesh_of, in_slices
+from gearopt.scenes.pair.notes import contact_assumptions, flank_assumptions
 from gearopt.scenes.pair.relief import relieved
 from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.scene import Scene
@@ -65,34 +66,30 @@ def sized(scene: Scene, ask: Ask, known: Result | None) -> Result:
     return drive.KIND.solve(scene.drive, ask)
 
 
-def _mesh(
-    scene: Scene, result: Result, seconds: float | None = None
-) -> tuple[DriveDesign, PairMesh]:
-    """Return the design of a result, and its pair in mesh; seconds: as of `mesh_of`."""
-    design = drive_design(result.design)
-    stage = design.stages[0]
-    materials = stage.pinion_material, stage.wheel_material
-    return design, mesh_of(scene, stage.pair, materials, seconds)
-
-
 def with_contact(scene: Scene, ask: Ask, known: Result | None) -> Result:
-    """Gears with their contact."""
+    """Gears with their contact, by slices of the face where `in_slices`."""
     assert known is not None
+    design = drive_design(known.design)
+    stage = design.stages[0]
+    pair, materials = stage.pair, (stage.pinion_material, stage.wheel_material)
+    seconds = ask.budget.seconds
     try:
-        design, mesh = _mesh(scene, known, ask.budget.seconds)
+        if in_slices(scene, pair):
+            mesh, level = flank_mesh_of(scene, pair, materials, seconds)
+            flank = flank_contact_of(scene, mesh, level, materials)
+            design, said = replace(design, flank=flank), flank_assumptions(scene, flank, pair)
+        else:
+            plane = mesh_of(scene, pair, materials, seconds)
+            contact = contact_of(scene, plane, materials)
+            design = replace(design, contact=contact)
+            said = contact_assumptions(scene, contact, pair)
     except TimeoutError as reason:
         return replace(known, name="pair", status="limit", design={}, message=str(reason))
-    stage = design.stages[0]
-    contact = contact_of(scene, mesh, (stage.pinion_material, stage.wheel_material))
-    assumptions = [
-        *known.report.get("assumptions", []),
-        *contact_assumptions(scene, contact, mesh.elastic.pair),
-    ]
     return replace(
         known,
         name="rating" if known.name == "rating" else "pair",
-        design=untyped(replace(design, contact=contact)),
-        report=known.report | {"assumptions": assumptions},
+        design=untyped(design),
+        report=known.report | {"assumptions": [*known.report.get("assumptions", []), *said]},
     )
 
 

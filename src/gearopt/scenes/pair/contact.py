@@ -6,8 +6,10 @@ from dataclasses import replace
 from gearopt.errors import SolveError
 from gearopt.formulations.pair.contact import DEAR, PairMesh, contact
 from gearopt.formulations.pair.design import PairContact
+from gearopt.frozen import dataclass
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair
+from gearopt.physics.geometry.contact import usable_path
 from gearopt.physics.geometry.flaws import flaws
 from gearopt.physics.iso6336.stiffness import (
     mean_blank_factor,
@@ -17,6 +19,7 @@ from gearopt.physics.iso6336.stiffness import (
 from gearopt.physics.tooth.elastic import POISSON, STEEL, ElasticPair
 from gearopt.physics.tooth.foundation import SAINSOT_BORE_RATIOS
 from gearopt.physics.tooth.ladder import COUPLINGS, LEVELS, USUAL
+from gearopt.physics.tooth.slices import normal_section
 from gearopt.physics.tooth.validity import cheapest, doubts, refused, usual_level, usual_plane
 from gearopt.scenes.drive.rating.gears import Tables, blanks, gear_tables
 from gearopt.scenes.pair.scene import Scene
@@ -34,35 +37,78 @@ def contact_of(scene: Scene, made: PairMesh, materials: Materials) -> PairContac
     coupling = scene.sharing.coupling
     name = "given" if isinstance(coupling, Quantity) else coupling
     pair = made.elastic.pair
-    beyond = (*_chosen(scene, made), *_webs(scene, pair, materials), *_validity(made, name))
-    computed = contact(
-        made, name, _stiffnesses_by_iso(scene, pair, made.elastic, materials), beyond
-    )
+    beyond = doubts_of(scene, pair, made.elastic, made.level, materials)
+    iso = stiffnesses_by_iso(scene, pair, made.elastic, materials)
+    computed = contact(made, name, iso, (*beyond, *_near_whole(pair)))
     most = max(one.largest_contact_stress_MPa for one in computed.loads)
-    if most <= BORNE:
-        return computed
-    said = (
-        f"The contact stress reaches {most:,.0f} MPa, and hardened steel yields from "
-        f"{BORNE:,.0f} MPa on: the gears are too small, or the load in the file is wrong."
+    return replace(computed, validity=(*computed.validity, *yielding(most)))
+
+
+def doubts_of(
+    scene: Scene, pair: GearPair, elastic: ElasticPair, level: str, materials: Materials
+) -> tuple[str, ...]:
+    """Sentences on what the models do not cover of a pair, and why the level is not the usual."""
+    coupling = scene.sharing.coupling
+    name = "given" if isinstance(coupling, Quantity) else coupling
+    return (
+        *_chosen(scene, level),
+        *_webs(scene, pair, materials),
+        *_validity(pair, elastic, level, name),
     )
-    return replace(computed, validity=(*computed.validity, said))
+
+
+def yielding(most: float) -> Iterator[str]:
+    """Yield what a contact stress [MPa] means that hardened steel does not bear."""
+    if most > BORNE:
+        yield (
+            f"The contact stress reaches {most:,.0f} MPa, and hardened steel yields from "
+            f"{BORNE:,.0f} MPa on: the gears are too small, or the load in the file is wrong."
+        )
+
+
+@dataclass(frozen=True)
+class Teeth:
+    """The teeth of a pair of a file: elastic in their normal section, by a level, at loads.
+
+    coupling: c_12 [mm/N] in the normal section, or as given.
+    """
+
+    elastic: ElasticPair
+    level: str
+    coupling: float
+    loads: tuple[float, ...]
 
 
 def mesh_of(
     scene: Scene, pair: GearPair, materials: Materials = ("", ""), seconds: float | None = None
 ) -> PairMesh:
-    """Return a pair of a file in mesh at its loads; SolveError where contact does not go on.
+    """Return a spur pair of a file in mesh at its loads; see `teeth_of`."""
+    try:
+        made = teeth_of(scene, pair, materials, seconds)
+        torque, steps = scene.duty.input_torque, scene.sharing.positions
+        mesh = PairMesh.of(made.elastic, made.level, torque, made.coupling, steps, made.loads)
+    except ImportError as reason:  # of finite elements, an extra
+        raise SolveError(str(reason)) from None
+    _check_coupling(mesh)
+    check_length(scene, float(mesh.elastic.path.transverse_ratio))
+    return mesh
+
+
+def teeth_of(
+    scene: Scene, pair: GearPair, materials: Materials = ("", ""), seconds: float | None = None
+) -> Teeth:
+    """Return the teeth of a pair of a file; SolveError where contact does not go on.
 
     materials: names of those chosen for pinion and wheel; "": there was no choice. TimeoutError
-    where so few seconds are left that finite elements of its teeth are not begun.
+    where so few seconds are left that finite elements of its teeth are not begun; ImportError
+    where they are not installed.
     """
     fatal = [flaw.sentence for flaw in flaws(pair) if flaw.fatal]
     if fatal:
         raise SolveError(f"there is no contact to compute: {fatal[0][0].lower()}{fatal[0][1:-1]}")
-    asked, duty, relief = scene.sharing, scene.duty, scene.relief
+    asked, relief = scene.sharing, scene.relief
     elastic = elastic_pair(scene, pair, materials)
     coupling = asked.coupling
-    moved = duty.input_torque
     loads = sorted({float(load) for load in (*asked.loads, *((relief and relief.loads) or ()))})
     level = level_of(scene, elastic)
     if excluded := refused(elastic, level):
@@ -72,19 +118,13 @@ def mesh_of(
             f'level = "{level}" in [sharing] takes a second or two: allow more time, or write '
             "another level"
         )
-    try:
-        coupled = coupling.value if isinstance(coupling, Quantity) else COUPLINGS[coupling](elastic)
-        mesh = PairMesh.of(elastic, level, moved, coupled, asked.positions, loads)
-    except ImportError as reason:  # of finite elements, an extra
-        raise SolveError(str(reason)) from None
-    _check_coupling(mesh)
-    _check_length(scene, mesh)
-    return mesh
+    coupled = coupling.value if isinstance(coupling, Quantity) else COUPLINGS[coupling](elastic)
+    return Teeth(elastic, level, coupled, tuple(loads))
 
 
-def _check_length(scene: Scene, made: PairMesh) -> None:
-    """Refuse a relief that is longer than the path of contact."""
-    asked, path = scene.relief, float(made.elastic.path.transverse_ratio)
+def check_length(scene: Scene, path: float) -> None:
+    """Refuse a relief that is longer than the path of contact; path: in base pitches."""
+    asked = scene.relief
     if asked is not None and asked.length is not None and asked.length[1] > path:
         raise SolveError(
             f"[relief] length goes up to {float(asked.length[1]):g} base pitches, but the path of "
@@ -121,7 +161,7 @@ def level_of(scene: Scene, elastic: ElasticPair) -> str:
 
 
 def elastic_pair(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> ElasticPair:
-    """Return a pair with its bores, materials and plane state."""
+    """Return a pair, in its normal section, with its bores, materials and plane state."""
     tables, bodies = _tables(scene, materials), blanks_of(scene, pair, materials)
     bores = [
         bore_of(blank, float(g.root_diameter)) for blank, g in zip(bodies, pair.gears, strict=True)
@@ -129,9 +169,8 @@ def elastic_pair(scene: Scene, pair: GearPair, materials: Materials = ("", "")) 
     moduli = [t.elastic_modulus.value if t.elastic_modulus else STEEL for t in tables]
     poissons = [float(t.poisson_ratio) if t.poisson_ratio is not None else POISSON for t in tables]
     plane = scene.sharing.plane or usual_plane(pair)
-    return ElasticPair(
-        pair, (bores[0], bores[1]), (moduli[0], moduli[1]), (poissons[0], poissons[1]), plane
-    )
+    ends = (moduli[0], moduli[1]), (poissons[0], poissons[1])
+    return normal_section(pair, (bores[0], bores[1]), *ends, plane)
 
 
 def blanks_of(scene: Scene, pair: GearPair, materials: Materials) -> tuple[Blank, Blank]:
@@ -155,7 +194,7 @@ def line_load(scene: Scene, pair: GearPair) -> float:
     return float(load / (pair.pinion.reference_diameter * pair.face_width))
 
 
-def _stiffnesses_by_iso(
+def stiffnesses_by_iso(
     scene: Scene, pair: GearPair, elastic: ElasticPair, materials: Materials
 ) -> tuple[float, float]:
     """Return c' and c_gamma_alpha [MPa] of ISO 6336-1 at the torque of the duty."""
@@ -163,17 +202,18 @@ def _stiffnesses_by_iso(
     blanks = blanks_of(scene, pair, materials)
     webs = tuple(blank.web(gear) for blank, gear in zip(blanks, pair.gears, strict=True))
     single = single_stiffness(pair, line, elastic.moduli, mean_blank_factor((webs[0], webs[1])))
-    return float(single), float(mesh_stiffness(single, elastic.path.transverse_ratio)[0])
+    ratio = usable_path(pair).transverse_ratio
+    return float(single), float(mesh_stiffness(single, ratio)[0])
 
 
-def _chosen(scene: Scene, made: PairMesh) -> Iterator[str]:
+def _chosen(scene: Scene, level: str) -> Iterator[str]:
     """Yield why the model of the teeth is not the usual one, where the file names none."""
     asked = scene.sharing
-    if asked.level is None and asked.error is None and made.level != USUAL:
+    if asked.level is None and asked.error is None and level != USUAL:
         yield (
             f'The file names no level, and the bores are too small for "{USUAL}", whose body was '
             f"fitted to a root circle of up to {SAINSOT_BORE_RATIOS[1]:g} bores: teeth are "
-            f'computed by "{made.level}", within 7 % of finite elements there.'
+            f'computed by "{level}", within 7 % of finite elements there.'
         )
 
 
@@ -189,20 +229,26 @@ def _webs(scene: Scene, pair: GearPair, materials: Materials) -> Iterator[str]:
             )
 
 
-def _validity(made: PairMesh, coupling: str) -> Iterator[str]:
+def _validity(
+    pair: GearPair, elastic: ElasticPair, level: str, coupling: str
+) -> Iterator[str]:
     """Yield what the models do not cover of these gears, and flaws that a designer may accept."""
-    if LEVELS[made.level].body == "half plane" and coupling in ("ring torsion", "finite elements"):
+    if LEVELS[level].body == "half plane" and coupling in ("ring torsion", "finite elements"):
         yield (
-            f"{made.level} has no torsion of the rings, which the coupling by {coupling} has: "
+            f"{level} has no torsion of the rings, which the coupling by {coupling} has: "
             'stiffness and coupling are then of two different bodies. Write coupling = "none".'
         )
-    sentences = doubts(made.elastic, made.level)
+    sentences = doubts(elastic, level)
     yield from sentences
     thin = any("tips" in sentence for sentence in sentences)
-    for flaw in flaws(made.elastic.pair):
+    for flaw in flaws(pair):
         if flaw.name != "interference" and not (thin and flaw.name == "thin tip"):
             yield flaw.sentence
-    ratio = float(made.elastic.path.transverse_ratio)
+
+
+def _near_whole(pair: GearPair) -> Iterator[str]:
+    """Yield that the contact ratio of a spur pair is next to a whole number."""
+    ratio = float(usable_path(pair).transverse_ratio)
     whole = round(ratio)
     if whole > 1 and abs(ratio - whole) < NEAR_WHOLE:
         yield (

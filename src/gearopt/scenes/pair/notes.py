@@ -3,11 +3,31 @@
 from collections.abc import Iterator
 
 from gearopt.formulations.pair.design import PairContact
+from gearopt.formulations.pair.flank_design import FlankContact
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.iso6336.stiffness import LEAST_LINE_LOAD
 from gearopt.scenes.drive.tables.rating import with_shared
 from gearopt.scenes.pair.contact import UNBORED, line_load
 from gearopt.scenes.pair.scene import Scene
+
+
+def flank_assumptions(scene: Scene, made: FlankContact, pair: GearPair) -> list[str]:
+    """Assumptions of contact by slices, in sentences."""
+    coupled = 1e6 * made.coupling_mm_per_N
+    return [
+        "Contact: involute helicoids with the modifications of the file and no other errors, no "
+        "friction, no dynamics; shafts and bearings give way by the misalignment of the file "
+        "alone, and gears are held at their bores. Loads are those of the duty without "
+        "application and dynamic factors. Teeth are taken to meet in the plane of action; "
+        "deflected ones without relief meet before it, at the edge of a tip.",
+        f"{made.slices} slices across the face, spur gears of the normal section by {made.level}, "
+        f"in plane {made.plane}; the contact compliance is that at the torque of the duty, at every "
+        "load. Slices of a tooth hold each other as strips of a plate do; that the side faces are "
+        "free, and one corner of a helical tooth sharp, is left out.",
+        f"All slices are coupled by {coupled:.3g} µm/kN ({made.coupling}).",
+        *_held(scene, made),
+        *_light(line_load(scene, pair)),
+    ]
 
 
 def contact_assumptions(scene: Scene, made: PairContact, pair: GearPair) -> list[str]:
@@ -37,7 +57,7 @@ def _light(line: float) -> Iterator[str]:
         )
 
 
-def _held(scene: Scene, made: PairContact) -> Iterator[str]:
+def _held(scene: Scene, made: PairContact | FlankContact) -> Iterator[str]:
     """Yield where a gear without a bore is taken to be held."""
     table = scene.drive.stage[0]
     for member in MEMBERS:

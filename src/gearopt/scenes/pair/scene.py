@@ -1,4 +1,4 @@
-"""A spur pair's file as a whole: the tables of a drive of one stage, and those of its contact."""
+"""A pair's file as a whole: the tables of a drive of one stage, and those of its contact."""
 
 from fractions import Fraction
 from typing import Any, ClassVar
@@ -13,6 +13,7 @@ from gearopt.scenes.drive.scene import DriveDuty
 from gearopt.scenes.drive.scene import Scene as Drive
 from gearopt.scenes.drive.tables.drive import Gears, Limits, Objective, StageTable, Teeth
 from gearopt.scenes.drive.tables.rating import LoadTable, RatingTable
+from gearopt.scenes.pair.flank_tables import FlankTable
 from gearopt.scenes.pair.pair_flaws import check_level, check_pair
 from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.sharing_tables import SharingTable
@@ -35,7 +36,7 @@ class OneStage(Drive):
 
 
 class Scene(ProblemFile):
-    """A spur pair."""
+    """A pair of gears."""
 
     duty: DriveDuty
     gears: Gears = Field(default_factory=Gears)
@@ -55,6 +56,7 @@ class Scene(ProblemFile):
     )
     objective: Objective = Field(default_factory=Objective)
     sharing: SharingTable = Field(default_factory=SharingTable)
+    flank: FlankTable | None = None
     relief: ReliefTable | None = None
 
     @property
@@ -81,7 +83,7 @@ class Scene(ProblemFile):
         if len(self.stage) > 1:
             rule = 'is a second pair: kind = "drive" has several stages'
             raise refuse(rule, at=("stage", 1), action="remove")
-        self._check_spur()
+        self._check_slices()
         if self.given:
             self._check_only_given()
         elif self.rating is None and (self.limits is None or not self.limits.loaded):
@@ -107,17 +109,27 @@ class Scene(ProblemFile):
             if name != "objective" or "minimise" in self.objective.model_fields_set:
                 raise refuse("changes nothing: the gears are given", at=(name,), action="remove")
 
-    def _check_spur(self) -> None:
-        """Refuse helical gears: what follows is of plane models."""
-        places: list[tuple[tuple[Any, ...], Any]] = [(("gears",), self.gears)]
-        places += [(("stage", k), own) for k, own in enumerate(self.stage)]
-        for place, table in places:
-            angles = () if table.helix_angle is None else values_of(table.helix_angle)
-            if any(angle.number for angle in angles):
-                rule = (
-                    'is of helical gears: kind = "pair" is for spur gears, as its models are plane'
-                )
-                raise refuse(rule, at=(*place, "helix_angle"), action="remove")
+    @property
+    def helical(self) -> bool:
+        """Return whether gears are helical, or may be chosen so."""
+        tables = (self.gears, *self.stage)
+        angles = [table.helix_angle for table in tables if table.helix_angle is not None]
+        return any(angle.number for each in angles for angle in values_of(each))
+
+    def _check_slices(self) -> None:
+        """Refuse what contact by slices, of helical gears or a table [flank], does not do."""
+        if self.relief is None or not (self.helical or self.flank):
+            return
+        of = "helical gears" if self.helical else "[flank]"
+        rule = f"does not go with {of}, whose relief is that of an amount and a length"
+        if self.relief.free:
+            raise refuse(rule, "linear", ("relief", "shape"))
+        for name in ("tolerance", "length_tolerance", "robust"):
+            if getattr(self.relief, name):
+                raise refuse(rule, at=("relief", name), action="remove")
+        if self.relief.minimise != "peak_to_peak":
+            rule = f"does not go with {of}: of these the peak_to_peak alone is minimised"
+            raise refuse(rule, "peak_to_peak", ("relief", "minimise"))
 
     def _tables(self) -> dict[str, Any]:
         """Return the tables that a drive has, of a pair to be sized with usual ranges."""

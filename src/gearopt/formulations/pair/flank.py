@@ -1,0 +1,213 @@
+"""Contact over the flank of a pair in slices across its face: loads, pressure, errors."""
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.pair.contact import column, spectrum
+from gearopt.formulations.pair.flank_design import FlankLoad
+from gearopt.formulations.pair.relief.meshing import NO_RELIEF, Relief
+from gearopt.frozen import dataclass
+from gearopt.optimise.terms import Array
+from gearopt.physics.agma.factors import elastic_coefficient
+from gearopt.physics.contact_lines import Face
+from gearopt.physics.mesh_cycle import Cycle
+from gearopt.physics.slice_sharing import SliceSharing, Springs, share_slices
+from gearopt.physics.tooth.slices import Sliced, Slices
+
+COLUMNS = 41  # positions on the path of a picture of the flank
+TOUCHING = 1e-9  # of a slice: a part that is shorter does not touch
+
+
+@dataclass(frozen=True)
+class Modifications:
+    """Gaps of both flanks together [mm], in the direction of the transverse line of action.
+
+    crowning C_beta: at both ends, a parabola; misalignment f: opens the end of the face where
+    contact begins, in a straight line from the other; helix_correction C_Hbeta: opens that other
+    end likewise, so that an equal one makes up for a misalignment. Source: ISO 21771:2007, crowning
+    and helix slope modification.
+    """
+
+    crowning: float = 0.0
+    helix_correction: float = 0.0
+    misalignment: float = 0.0
+
+    def gaps(self, face: Face) -> Array:
+        """Return gaps [mm] (m,) of the slices of a face, the least of a straight part 0."""
+        ahead = face.places / face.width
+        slope = self.misalignment - self.helix_correction
+        straight = slope * ahead + 0.5 * abs(slope)
+        return np.asarray(self.crowning * (2.0 * ahead) ** 2 + straight)
+
+
+@dataclass(frozen=True)
+class FlankMesh:
+    """All contact lines of a pair over one base pitch of travel, in slices, and its loads.
+
+    loads: relative to the force of `sliced`; reliefs of the tips of pinion and wheel.
+    """
+
+    sliced: Sliced
+    face: Face
+    cycle: Cycle
+    loads: tuple[float, ...]
+    modifications: Modifications
+    reliefs: tuple[Relief, Relief] = (NO_RELIEF, NO_RELIEF)
+
+    @classmethod
+    def of(
+        cls,
+        sliced: Sliced,
+        slices: int,
+        steps: int,
+        loads: tuple[float, ...],
+        modifications: Modifications,
+        reliefs: tuple[Relief, Relief] = (NO_RELIEF, NO_RELIEF),
+    ) -> "FlankMesh":
+        """Return the mesh of a pair with so many slices; steps over a base pitch."""
+        face = Face.of(sliced.pair, slices)
+        cycle = face.cycle(sliced.path, steps)
+        return cls(sliced, face, cycle, loads, modifications, reliefs)
+
+    @cached_property
+    def _parts(self) -> tuple[Array, Array]:
+        """Parts of slices in contact (p, n, m), and positions [mm] of their middles."""
+        part, at = self.face.parts(self.sliced.path, self.cycle.positions)
+        return np.where(part > TOUCHING, part, 0.0), at
+
+    @cached_property
+    def compliances(self) -> Slices:
+        """Compliances of the slices (p, n, m)."""
+        return self.sliced.compliances(self._parts[1])
+
+    @cached_property
+    def springs(self) -> Springs:
+        """Springs of all slices (p, n, m)."""
+        part, wide = self._parts[0], self.face.slice_width
+        bed, links = self.compliances.springs(wide)
+        length = np.where(part > 0.0, part, 1.0) * wide
+        return Springs(self.compliances.contact / length, bed, links, self.sliced.coupling)
+
+    @cached_property
+    def separations(self) -> Array:
+        """What lacks to contact of unloaded slices [mm] (p, n, m), infinite where none is."""
+        part, at = self._parts
+        path, flat = self.sliced.path, at.reshape(len(at), -1)
+        gaps = np.broadcast_to(self.modifications.gaps(self.face), at.shape)
+        for relief, x in zip(self.reliefs, (path.end - flat, flat - path.start), strict=True):
+            gaps = gaps + relief.removed(np.maximum(x, 0.0)).reshape(at.shape)
+        return np.where(part > 0.0, gaps, np.inf)
+
+    @cached_property
+    def sharing(self) -> SliceSharing:
+        """Forces (l, p, n, m), approach (l, p), gaps (l, p, n, m) of every load."""
+        forces = self.sliced.force * np.array(self.loads)
+        return share_slices(self.springs, self.separations[None], forces[:, None])
+
+    @cached_property
+    def lines(self) -> Array:
+        """Length of all contact lines together [mm] at every travel (p,)."""
+        part, _ = self._parts
+        return np.asarray(part.sum(axis=(-2, -1)) * self.face.slice_width / self.sliced.cosine)
+
+    def line_loads(self, k: int) -> Array:
+        """Transverse forces per face width [N/mm] (p, n, m) at a load, counted from 0."""
+        part, _ = self._parts
+        length = np.where(part > 0.0, part, 1.0) * self.face.slice_width
+        return np.asarray(self.sharing.forces[k] / length)
+
+    def stresses(self, line_loads: Array) -> Array:
+        """Return Hertz's stress [MPa] of line loads F_bt/b [N/mm] (p, n, m).
+
+        sigma_H = Z_E sqrt(F_bt/b cos(beta_b) (1/rho_t1 + 1/rho_t2)): force over length of the line
+        is F_bt/b, and the radii of the normal section are rho_t/cos(beta_b). Source: Hertz's
+        cylinders; ISO 21771:2007, radii of curvature in the normal section.
+        """
+        _, at = self._parts
+        elastic = self.sliced.normal
+        (e1, e2), (nu1, nu2) = elastic.moduli, elastic.poissons
+        first, second = self.sliced.path.radii_of_curvature(at)
+        curved = self.sliced.cosine * (1.0 / first + 1.0 / second)
+        return np.asarray(elastic_coefficient(e1, nu1, e2, nu2) * np.sqrt(line_loads * curved))
+
+    @cached_property
+    def path_columns(self) -> Array:
+        """Positions s [mm] on the path of the pictures of a flank."""
+        path = self.sliced.path
+        return np.linspace(float(path.start), float(path.end), COLUMNS)
+
+    def picture(self, values: Array) -> tuple[tuple[float, ...], ...]:
+        """Return values (p, n, m) over the flank, one row per slice, at `path_columns`.
+
+        Between the positions at which a slice is met by lines; at a jump, the mean.
+        """
+        part, at = self._parts
+        rows = []
+        for j in range(self.face.count):
+            there = part[..., j] > 0.0
+            s, v = at[..., j][there], values[..., j][there]
+            order = np.argsort(s, kind="stable")
+            rows.append(column(np.interp(self.path_columns, s[order], v[order])))
+        return tuple(rows)
+
+
+def flank_loads(mesh: FlankMesh) -> tuple[FlankLoad, ...]:
+    """Contact over the flank at every load."""
+    return tuple(_loaded(mesh, k) for k in range(len(mesh.loads)))
+
+
+def _loaded(mesh: FlankMesh, k: int) -> FlankLoad:
+    """Contact over the flank at a load, counted from 0."""
+    force = mesh.loads[k] * mesh.sliced.force
+    travels, error = mesh.cycle.travels, mesh.sharing.approach[k]
+    line = mesh.line_loads(k)
+    stress = mesh.stresses(line)
+    width = mesh.face.width
+    mean, *harmonics = spectrum(travels, error)
+    stiffness = force / (width * error) if force else np.zeros_like(error)
+    (s_line, y_line), (s_stress, y_stress) = (_place(mesh, each) for each in (line, stress))
+    return FlankLoad(
+        load=mesh.loads[k],
+        normal_force_N=force,
+        largest_line_load_N_per_mm=float(line.max()),
+        line_load_position_mm=s_line,
+        line_load_place_mm=y_line,
+        face_load_factor=_face_load_factor(mesh, k) if force else 1.0,
+        largest_contact_stress_MPa=float(stress.max()),
+        contact_stress_position_mm=s_stress,
+        contact_stress_place_mm=y_stress,
+        mean_transmission_error_mm=mean,
+        peak_to_peak_mm=float(np.ptp(error)),
+        harmonics_mm=column(harmonics),
+        mean_mesh_stiffness_MPa=spectrum(travels, stiffness)[0],
+        least_mesh_stiffness_MPa=float(stiffness.min()),
+        most_mesh_stiffness_MPa=float(stiffness.max()),
+        open_share=_open_share(mesh, k),
+        transmission_error_mm=column(error),
+        line_load_N_per_mm=mesh.picture(line),
+        contact_stress_MPa=mesh.picture(stress),
+    )
+
+
+def _place(mesh: FlankMesh, values: Array) -> tuple[float, float]:
+    """Return s and y [mm] where a value (p, n, m) is largest."""
+    at = np.unravel_index(int(values.argmax()), values.shape)
+    return float(mesh._parts[1][at]), float(mesh.face.places[at[2]])
+
+
+def _face_load_factor(mesh: FlankMesh, k: int) -> float:
+    """Largest over mean of the force per face width, averaged over a base pitch."""
+    forces = mesh.sharing.forces[k].sum(axis=1)
+    average = np.trapezoid(forces, mesh.cycle.travels, axis=0)
+    return float(average.max() / average.mean())
+
+
+def _open_share(mesh: FlankMesh, k: int) -> float:
+    """Part of the length of the contact lines that carries nothing, averaged over a base pitch."""
+    part, _ = mesh._parts
+    idle = np.where(mesh.sharing.forces[k] > 0.0, 0.0, part).sum(axis=(1, 2))
+    whole = part.sum(axis=(1, 2))
+    travels = mesh.cycle.travels
+    return float(np.trapezoid(idle, travels) / np.trapezoid(whole, travels))

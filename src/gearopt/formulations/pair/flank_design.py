@@ -1,0 +1,89 @@
+"""Fields of a report on contact over the flank of a pair: line loads, pressure, errors, stiffness.
+
+Fields are keys of a result, with their units.
+"""
+
+from typing import Annotated
+
+from gearopt.formulations.pair.design import Columns
+from gearopt.frozen import dataclass
+from gearopt.optimise.typed import Shown
+
+
+@dataclass(frozen=True, kw_only=True)
+class FlankLoad:
+    """Contact over the flank at one load, relative to the torque of the duty.
+
+    line load: transverse normal force per face width, largest at position s on the path of contact
+    and y across the face, as the largest contact stress. face_load_factor: largest over mean of the
+    force per face width, summed over all lines and averaged over a base pitch. line_load, stress:
+    one row per place across the face, over the path of the flank. transmission error: approach
+    along the transverse line of action.
+    """
+
+    load: float
+    normal_force_N: Annotated[float, Shown("transverse normal force", "forces")]
+    largest_line_load_N_per_mm: Annotated[
+        float, Shown("largest line load", "forces", unit="N_per_mm")
+    ]
+    line_load_position_mm: Annotated[float, Shown("at s on the path", "forces")]
+    line_load_place_mm: Annotated[float, Shown("and y across the face", "forces")]
+    face_load_factor: Annotated[float, Shown("face load factor of the flank", "forces")]
+    largest_contact_stress_MPa: Annotated[float, Shown("largest contact stress", "motion")]
+    contact_stress_position_mm: Annotated[float, Shown("there at s", "motion")]
+    contact_stress_place_mm: Annotated[float, Shown("there at y", "motion")]
+    mean_transmission_error_mm: Annotated[float, Shown("transmission error, mean", "motion", "um")]
+    peak_to_peak_mm: Annotated[float, Shown("peak to peak", "motion", "um")]
+    harmonics_mm: Columns
+    mean_mesh_stiffness_MPa: Annotated[
+        float, Shown("mesh stiffness, mean", "stiffness", "N_per_mm_um")
+    ]
+    least_mesh_stiffness_MPa: Annotated[
+        float, Shown("mesh stiffness, minimum", "stiffness", "N_per_mm_um")
+    ]
+    most_mesh_stiffness_MPa: Annotated[
+        float, Shown("mesh stiffness, maximum", "stiffness", "N_per_mm_um")
+    ]
+    open_share: float
+    transmission_error_mm: Columns
+    line_load_N_per_mm: tuple[Columns, ...]
+    contact_stress_MPa: tuple[Columns, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class FlankContact:
+    """Contact over the flank of a pair of gears, helical or spur, by slices across the face.
+
+    level, plane, coupling, error, bores, iso: as of `PairContact`. crowning, helix_correction,
+    misalignment: gaps of both flanks together. lengths of all contact lines: least, mean, largest,
+    by closed form. path_mm: positions s of the columns of a flank; place_mm: y of its rows, from
+    the middle of the face towards the end where contact begins. travel_mm: over one base pitch.
+    """
+
+    level: str
+    error_percent: tuple[float, float]
+    plane: str
+    coupling: str
+    coupling_mm_per_N: float
+    pinion_bore_mm: float
+    wheel_bore_mm: float
+    slices: int
+    crowning_mm: float
+    helix_correction_mm: float
+    misalignment_mm: float
+    relief_mm: tuple[float, float]
+    relief_length_mm: tuple[float, float]
+    base_pitch_mm: float
+    base_helix_angle_deg: float
+    face_width_mm: float
+    contact_ratio: float
+    overlap_ratio: float
+    contact_lines_mm: tuple[float, float, float]
+    iso_single_stiffness_MPa: float
+    iso_mesh_stiffness_MPa: float
+    path_mm: Columns
+    place_mm: Columns
+    travel_mm: Columns
+    lines_mm: Columns
+    loads: tuple[FlankLoad, ...]
+    validity: tuple[str, ...] = ()

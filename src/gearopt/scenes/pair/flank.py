@@ -1,0 +1,154 @@
+"""Contact over the flank of a pair of a file: helical gears, or a table [flank]."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from gearopt.errors import SolveError
+from gearopt.formulations.pair.contact import column, compliance_of
+from gearopt.formulations.pair.flank import FlankMesh, Modifications, flank_loads
+from gearopt.formulations.pair.flank_design import FlankContact
+from gearopt.formulations.pair.relief.meshing import NO_RELIEF, Relief
+from gearopt.physics.contact_lines import length_range, mean_length
+from gearopt.physics.gears import GearPair
+from gearopt.physics.geometry.contact import usable_path
+from gearopt.physics.geometry.tooth import base_helix_angle
+from gearopt.physics.tooth.ladder import LEVELS, USUAL
+from gearopt.physics.tooth.slices import Sliced
+from gearopt.scenes.pair.contact import (
+    Materials,
+    check_length,
+    doubts_of,
+    stiffnesses_by_iso,
+    teeth_of,
+    yielding,
+)
+from gearopt.scenes.pair.flank_tables import FlankTable
+from gearopt.scenes.pair.scene import Scene
+from gearopt.units import Quantity
+
+IDLE = 0.02  # part of the contact lines that carries nothing, from which on it is told
+
+
+def in_slices(scene: Scene, pair: GearPair) -> bool:
+    """Return whether the contact of a pair of a file is computed by slices across the face."""
+    return scene.flank is not None or float(pair.pinion.helix_angle) != 0.0
+
+
+def flank_mesh_of(
+    scene: Scene, pair: GearPair, materials: Materials = ("", ""), seconds: float | None = None
+) -> tuple[FlankMesh, str]:
+    """Return a pair of a file in slices, and the level of its teeth; errors as of `teeth_of`."""
+    table = scene.flank or FlankTable()
+    path = usable_path(pair)
+    check_length(scene, float(path.transverse_ratio))
+    torque = scene.duty.input_torque
+    force = float(torque / (0.5 * pair.pinion.base_diameter))
+    try:
+        made = teeth_of(scene, pair, materials, seconds)
+        compliance = compliance_of(made.elastic, made.level, force)
+        given = isinstance(scene.sharing.coupling, Quantity)
+        inclined = 1.0 if given else float(np.cos(base_helix_angle(pair.pinion)))
+        coupling = made.coupling / inclined
+        sliced = Sliced(pair, path, made.elastic, compliance, force, coupling)
+        modifications = Modifications(
+            *(table.millimetres(n) for n in ("crowning", "helix_correction", "misalignment"))
+        )
+        mesh = FlankMesh.of(
+            sliced,
+            table.slices,
+            scene.sharing.positions,
+            made.loads,
+            modifications,
+            _reliefs(scene, float(path.base_pitch)),
+        )
+        least = float(mesh.compliances.structure.min())
+    except ImportError as reason:  # of finite elements, an extra
+        raise SolveError(str(reason)) from None
+    if least <= 0.0:
+        raise SolveError(
+            f'[sharing] level = "{made.level}" makes teeth stiffer than their contact and coupling '
+            f'alone, so that slices have nothing to hold each other by: write level = "{USUAL}", '
+            'or coupling = "none"'
+        )
+    return mesh, made.level
+
+
+def _reliefs(scene: Scene, pitch: float) -> tuple[Relief, Relief]:
+    """Return the tip relief of a file that gives it; pitch [mm] of the base circle."""
+    asked = scene.relief
+    if asked is None or not asked.given:
+        return NO_RELIEF, NO_RELIEF
+    assert asked.length is not None
+    given = Relief(asked.amount[0].value, float(asked.length[0]) * pitch, asked.exponent)
+    return given, given
+
+
+def flank_contact_of(
+    scene: Scene, mesh: FlankMesh, level: str, materials: Materials
+) -> FlankContact:
+    """Return the contact over the flank of a pair of a file."""
+    sliced, face, known = mesh.sliced, mesh.face, LEVELS[level]
+    pair, path, elastic = sliced.pair, sliced.path, sliced.normal
+    errors = (*known.error, *known.wider)
+    coupling = scene.sharing.coupling
+    iso = stiffnesses_by_iso(scene, pair, elastic, materials)
+    loads = flank_loads(mesh)
+    beyond = doubts_of(scene, pair, elastic, level, materials)
+    most = max(load.largest_contact_stress_MPa for load in loads)
+    held = [relief.amount if relief.amount else 0.0 for relief in mesh.reliefs]
+    long = [float(relief.length) if relief.amount else 0.0 for relief in mesh.reliefs]
+    bores = [
+        float(bore * gear.root_diameter / own.root_diameter)
+        for bore, own, gear in zip(elastic.bores, elastic.pair.gears, pair.gears, strict=True)
+    ]
+    return FlankContact(
+        level=level,
+        error_percent=(100.0 * min(errors), 100.0 * max(errors)),
+        plane=elastic.plane,
+        coupling="given" if isinstance(coupling, Quantity) else coupling,
+        coupling_mm_per_N=sliced.coupling,
+        pinion_bore_mm=bores[0],
+        wheel_bore_mm=bores[1],
+        slices=face.count,
+        crowning_mm=mesh.modifications.crowning,
+        helix_correction_mm=mesh.modifications.helix_correction,
+        misalignment_mm=mesh.modifications.misalignment,
+        relief_mm=(float(held[0]), float(held[1])),
+        relief_length_mm=(long[0], long[1]),
+        base_pitch_mm=float(path.base_pitch),
+        base_helix_angle_deg=float(np.degrees(np.arctan(face.slope))),
+        face_width_mm=face.width,
+        contact_ratio=float(path.transverse_ratio),
+        overlap_ratio=float(pair.overlap_ratio),
+        contact_lines_mm=_lengths(pair, float(path.transverse_ratio), mean_length(pair, path)),
+        iso_single_stiffness_MPa=iso[0],
+        iso_mesh_stiffness_MPa=iso[1],
+        path_mm=column(mesh.path_columns),
+        place_mm=column(face.places),
+        travel_mm=column(mesh.cycle.travels * path.base_pitch),
+        lines_mm=column(mesh.lines),
+        loads=loads,
+        validity=(*beyond, *yielding(most), *_idle(mesh, [load.open_share for load in loads])),
+    )
+
+
+def _lengths(pair: GearPair, ratio: float, mean: float) -> tuple[float, float, float]:
+    """Return least, mean and largest length [mm] of the contact lines, by closed form."""
+    overlap = float(pair.overlap_ratio)
+    if overlap == 0.0:
+        whole = int(np.floor(ratio + 1e-9))
+        most = whole if ratio - whole < 1e-9 else whole + 1
+        return whole * float(pair.face_width), mean, most * float(pair.face_width)
+    low, high = length_range(ratio, overlap)
+    return low * mean, mean, high * mean
+
+
+def _idle(mesh: FlankMesh, shares: Sequence[float]) -> Iterator[str]:
+    """Yield at which loads part of the contact lines carries nothing."""
+    for load, share in zip(mesh.loads, shares, strict=True):
+        if load and share > IDLE:
+            yield (
+                f"At {100.0 * load:g} % of the duty's torque {100.0 * share:.2g} % of the length "
+                "of the contact lines carries nothing."
+            )
