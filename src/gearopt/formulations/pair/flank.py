@@ -18,6 +18,8 @@ from gearopt.physics.tooth.slices import Sliced, Slices
 
 COLUMNS = 41  # positions on the path of a picture of the flank
 TOUCHING = 1e-9  # of a slice: a part that is shorter does not touch
+MISSING = 0.7  # of a slice: as much may be beyond the end of a contact line
+SHORT = 1.0  # modules: contact lines that are shorter, at corners of a flank, are not told
 
 
 @dataclass(frozen=True)
@@ -86,7 +88,7 @@ class FlankMesh:
     def springs(self) -> Springs:
         """Springs of all slices (p, n, m)."""
         part, wide = self._parts[0], self.face.slice_width
-        bed, links = self.compliances.springs(wide)
+        bed, links = self.compliances.springs(wide, self.face.slope)
         length = np.where(part > 0.0, part, 1.0) * wide
         return Springs(self.compliances.contact / length, bed, links, self.sliced.coupling)
 
@@ -112,11 +114,26 @@ class FlankMesh:
         part, _ = self._parts
         return np.asarray(part.sum(axis=(-2, -1)) * self.face.slice_width / self.sliced.cosine)
 
+    @cached_property
+    def told(self) -> Any:
+        """Whether slices (p, n, m) touch over their width, on a contact line that is not `SHORT`.
+
+        The load of the part of a slice at the end of a line depends on how slices are cut, and the
+        springs of a line as short as a tooth is high are not those of the models.
+        """
+        part, _ = self._parts
+        long = part.sum(axis=-1, keepdims=True) * self.face.slice_width / self.sliced.cosine
+        least = min(SHORT * float(self.sliced.pair.normal_module), 0.5 * float(long.max()))
+        return (part >= 1.0 - MISSING) & (long >= least)
+
     def line_loads(self, k: int) -> Array:
-        """Transverse forces per face width [N/mm] (p, n, m) at a load, counted from 0."""
+        """Transverse forces per face width [N/mm] (p, n, m) at a load, counted from 0.
+
+        0 where they are not `told`.
+        """
         part, _ = self._parts
         length = np.where(part > 0.0, part, 1.0) * self.face.slice_width
-        return np.asarray(self.sharing.forces[k] / length)
+        return np.where(self.told, self.sharing.forces[k] / length, 0.0)
 
     def stresses(self, line_loads: Array) -> Array:
         """Return Hertz's stress [MPa] of line loads F_bt/b [N/mm] (p, n, m).
@@ -143,10 +160,10 @@ class FlankMesh:
 
         Between the positions at which a slice is met by lines; at a jump, the mean.
         """
-        part, at = self._parts
+        _, at = self._parts
         rows = []
         for j in range(self.face.count):
-            there = part[..., j] > 0.0
+            there = self.told[..., j]
             s, v = at[..., j][there], values[..., j][there]
             order = np.argsort(s, kind="stable")
             rows.append(column(np.interp(self.path_columns, s[order], v[order])))

@@ -8,7 +8,7 @@ from gearopt.scenes.reading.fields import Table, quantity, whole
 from gearopt.units import Quantity
 
 GAP = quantity("length", "10 um", "1 mm", signed=True)
-SLICES = 21
+SLICES = 41
 
 
 class FlankTable(Table):

@@ -13,6 +13,7 @@ from gearopt.report.drawing import mesh_view, train_views
 from gearopt.report.kinds import Pages, drive
 from gearopt.report.kinds.drive import rating_words
 from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, OPENING, REQUEST
+from gearopt.report.kinds.pair import flank
 from gearopt.report.kinds.pair import relief as pair_relief
 from gearopt.report.kinds.pair.contact import (
     TABLES,
@@ -41,6 +42,8 @@ def contact_of(result: Result) -> PairContact | None:
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
     """Load on a tooth, transmission error and stiffness as key figures."""
+    if made := flank.flank_of(result):
+        return [*flank.tiles(made, measures), *rating_words.tiles(result, measures)]
     if (pair_contact := contact_of(result)) is None:
         return []
     relief = relief_of(result)
@@ -80,12 +83,19 @@ def binding_limit(result: Result, measures: Measures = METRIC) -> str:
     """Largest load of one tooth and evenness of the pair, in words."""
     if relief := relief_of(result):
         return pair_relief.relief_words(relief, measures)
+    if (made := flank.flank_of(result)) and result.value is None:
+        return _with_rating(result, flank.binding_words(made, measures), measures)
     if (pair_contact := contact_of(result)) is None or result.value is not None:
         return ""
     load = of_duty(pair_contact)
     force = amount(load.largest_tooth_force_N, "N", measures)
     error = amount(load.peak_to_peak_mm, "um", measures)
     words = f"one tooth carries up to {force}; the transmission error varies by {error}"
+    return _with_rating(result, words, measures)
+
+
+def _with_rating(result: Result, words: str, measures: Measures) -> str:
+    """Words on the contact, after those on the rating where there is one."""
     rated = rating_words.binding_limit(result, measures)
     return f"{rated}; {words}" if rated else words
 
@@ -97,7 +107,7 @@ def sentences_on_parts(result: Result, measures: Measures) -> list[str]:
 
 def warns(result: Result, measures: Measures = METRIC) -> Sequence[str]:
     """Unsafe gears by the rating, and cases that the models of contact do not cover."""
-    pair_contact = contact_of(result)
+    pair_contact = contact_of(result) or flank.flank_of(result)
     warnings = rating_words.warns(result, measures)
     return [
         *warnings,
@@ -166,7 +176,7 @@ def harmonics(result: Result, measures: Measures) -> Section | None:
 
 def numbers(result: Result, measures: Measures) -> Section | None:
     """The tables of the gears, as a drive of one stage has them, with the contact ratio."""
-    gears = {k: v for k, v in result.design.items() if k not in ("contact", "relief")}
+    gears = {k: v for k, v in result.design.items() if k not in ("contact", "relief", "flank")}
     section = drive.numbers(replace(result, design=gears), measures)
     if section is None:
         return None
@@ -180,12 +190,16 @@ def numbers(result: Result, measures: Measures) -> Section | None:
     return replace(section, terminal=shown)
 
 
-CONTACT = (relief, mesh, harmonics, contact)
+CONTACT = (relief, mesh, harmonics, contact, flank.section)
 DRAWINGS = (teeth, in_space, train_views.section)
 RATINGS = tuple(make for make in drive.RATINGS if make is not mesh_view.section)  # mesh is better
 PAGES_OF_GIVEN = Pages(
     sections=(summary, *CONTACT, *DRAWINGS, *RATINGS, numbers, asked, assumptions),
-    terminal=(numbers, contact, relief, *drive.PAGES_OF_GIVEN.terminal, summary),
+    terminal=(
+        *(numbers, contact, flank.section, relief),
+        *drive.PAGES_OF_GIVEN.terminal,
+        summary,
+    ),
     tiles=tiles,
     binding_limit=binding_limit,
     warns=warns,
@@ -200,7 +214,10 @@ PAGES = Pages(
         *REQUEST,
         *CLOSING,
     ),
-    terminal=(numbers, limits, *drive.PAGES_OF_GIVEN.terminal, contact, relief, *AFTER_DESIGN),
+    terminal=(
+        *(numbers, limits, *drive.PAGES_OF_GIVEN.terminal),
+        *(contact, flank.section, relief, *AFTER_DESIGN),
+    ),
     tiles=tiles,
     binding_limit=binding_limit,
     sentences_on_parts=sentences_on_parts,

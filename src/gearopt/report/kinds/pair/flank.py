@@ -1,0 +1,323 @@
+"""Contact over the flank: pictures of load and pressure, contact lines, errors, words, tables."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.pair.flank_design import FlankContact, FlankLoad
+from gearopt.optimise.result import Result
+from gearopt.optimise.typed import typed
+from gearopt.report.drawing.sheet import series
+from gearopt.report.kinds.pair.contact import columns
+from gearopt.report.measures import METRIC, Measures, rounded
+from gearopt.report.plots import Figure, axis, heat, layout
+from gearopt.report.plots import lines as curve
+from gearopt.report.section import Cell, Section, Table, Tile, cell, side_by_side
+from gearopt.report.words import amount, micrometres, number, share
+
+STIFFNESS = "N_per_mm_um"  # of MPa
+EVEN = 5e-4  # of a face load factor: nearer to 1 it is even
+HEIGHT = 380  # px
+DASHES = ("solid", "dash", "dashdot", "longdash")  # of one load after the other
+# per cent by which the model was off on three pairs against finite elements in space
+MEASURED = (
+    "Accuracy: on three helical pairs of steel gears, helix angles 12 to 25 degrees, with coupling "
+    '= "finite elements" the mean stiffness was {stiff} that by finite elements of whole '
+    "gears in space, the peak-to-peak transmission error {error}, and the load along the lines off "
+    "by {load} % rms."
+)
+SOFTER = (
+    'With coupling = "{coupling}" the mean stiffness was {stiff} higher there and the peak-to-peak '
+    "transmission error up to {error} larger."
+)
+
+
+def flank_of(result: Result) -> FlankContact | None:
+    """The contact over the flank that a design holds; None without one."""
+    held = result.design.get("flank")
+    made: FlankContact | None = typed(FlankContact, held, "flank") if held else None
+    return made
+
+
+def of_duty(flank: FlankContact) -> FlankLoad:
+    """Contact at the torque of the duty, else at the largest load."""
+    loads = {load.load: load for load in flank.loads}
+    return loads.get(1.0) or loads[max(loads)]
+
+
+def tiles(flank: FlankContact, measures: Measures) -> list[Tile]:
+    """Line load, transmission error, stiffness and contact ratios as key figures."""
+    load = of_duty(flank)
+    torque = f"at {share(load.load)} % of the duty's torque"
+    iso = amount(flank.iso_mesh_stiffness_MPa, STIFFNESS, measures)
+    return [
+        Tile(
+            "largest line load",
+            amount(load.largest_line_load_N_per_mm, "N_per_mm", measures),
+            f"face load factor {number(load.face_load_factor)}, {torque}",
+        ),
+        Tile(
+            "transmission error, peak to peak",
+            amount(load.peak_to_peak_mm, "um", measures),
+            torque,
+        ),
+        Tile(
+            "mean mesh stiffness",
+            amount(load.mean_mesh_stiffness_MPa, STIFFNESS, measures),
+            f"c_γα of ISO 6336-1: {iso}",
+        ),
+        Tile(
+            "total contact ratio",
+            number(flank.contact_ratio + flank.overlap_ratio),
+            f"ε_α {number(flank.contact_ratio)} and ε_β {number(flank.overlap_ratio)}",
+        ),
+    ]
+
+
+def binding_words(flank: FlankContact, measures: Measures) -> str:
+    """Largest line load and evenness of the pair, in words."""
+    load = of_duty(flank)
+    line = amount(load.largest_line_load_N_per_mm, "N_per_mm", measures)
+    error = amount(load.peak_to_peak_mm, "um", measures)
+    return f"the flanks carry up to {line} of face width; the transmission error varies by {error}"
+
+
+def section(result: Result, measures: Measures = METRIC) -> Section | None:
+    """Say how the load lies on the flanks, with pictures and tables; None without it."""
+    if (flank := flank_of(result)) is None:
+        return None
+    words = list(map(measures.words, answers(flank, measures)))
+    tables = [_loads(flank, measures), *_tables(flank, measures)]
+    return Section(
+        "Contact over the flank",
+        words=words,
+        figures=_figures(flank, measures),
+        tables=tables,
+        terminal=("\n".join(words), tables[0]),
+    )
+
+
+def answers(flank: FlankContact, measures: Measures = METRIC) -> list[str]:
+    """Where the load lies, how even the motion is, stiffness, and how sure that is."""
+    load = of_duty(flank)
+    if not load.normal_force_N:
+        return ["Without load nothing is carried.", _lines(flank, measures)]
+    each = [
+        f"{micrometres(it.peak_to_peak_mm, measures)} at {100.0 * it.load:g} % of the torque"
+        for it in flank.loads
+        if it.load
+    ]
+    off = 100.0 * (load.mean_mesh_stiffness_MPa / flank.iso_mesh_stiffness_MPa - 1.0)
+    return [
+        _lines(flank, measures),
+        _where(load, measures),
+        f"The transmission error varies by {', '.join(each)}, peak to peak.",
+        f"The mean mesh stiffness is {rounded(abs(off), 2)} % {'above' if off > 0 else 'below'} "
+        "c_γα of ISO 6336-1.",
+        *_relief(flank, measures),
+        *_sure(flank),
+    ]
+
+
+def _lines(flank: FlankContact, measures: Measures) -> str:
+    """Say how long the contact lines are."""
+    least, mean, most = (amount(v, "mm", measures) for v in flank.contact_lines_mm)
+    return f"All contact lines together are {least} to {most} long, {mean} on average."
+
+
+def _where(load: FlankLoad, measures: Measures) -> str:
+    """Say where the line load is largest, and how uneven it is across the face."""
+    line = amount(load.largest_line_load_N_per_mm, "N_per_mm", measures)
+    s, y = (
+        amount(v, "mm", measures) for v in (load.line_load_position_mm, load.line_load_place_mm)
+    )
+    even = load.face_load_factor < 1.0 + EVEN
+    factor = (
+        "on average over a base pitch it is even across the face"
+        if even
+        else "averaged over a base pitch the most loaded slice carries "
+        f"{rounded(load.face_load_factor, 3)} times the mean"
+    )
+    return (
+        f"At {100.0 * load.load:g} % of the torque the line load is largest, {line}, at s = {s} on "
+        f"the path of contact and y = {y} across the face; {factor}."
+    )
+
+
+def _relief(flank: FlankContact, measures: Measures) -> list[str]:
+    """Say what tip relief the flanks have."""
+    if not any(flank.relief_mm):
+        return []
+    first, second = (micrometres(v, measures) for v in flank.relief_mm)
+    long = [amount(v, "mm", measures) for v in flank.relief_length_mm]
+    return [
+        f"With tip relief of {first} on the pinion and {second} on the wheel, over {long[0]} and "
+        f"{long[1]} of the path of contact."
+    ]
+
+
+def _sure(flank: FlankContact) -> list[str]:
+    """Say how far the model was off."""
+    if flank.overlap_ratio == 0.0:
+        return []
+    return [MEASURED_WORDS, *([COUPLED_WORDS] if flank.coupling == "ring torsion" else [])]
+
+
+MEASURED_WORDS = MEASURED.format(stiff="", error="", load="")
+COUPLED_WORDS = SOFTER.format(coupling="ring torsion", stiff="", error="")
+
+
+def _figures(flank: FlankContact, measures: Measures) -> list[Figure]:
+    """Pictures of line load and pressure at the duty's torque, and curves over a base pitch."""
+    load = of_duty(flank)
+    pressure = _picture(flank, load.contact_stress_MPa, "MPa", "contact stress", measures)
+    pictured = _picture(flank, load.line_load_N_per_mm, "N_per_mm", "line load", measures)
+    at = f"at {100.0 * load.load:g} % of the duty's torque"
+    whole = (
+        "Each point of the picture is loaded as a contact line passes it; lines: contact at one "
+        "moment, which moves to the right."
+    )
+    return [
+        Figure(*pictured, f"Force per face width over the flank, {at}. {whole}"),
+        Figure(*pressure, f"Hertz's contact stress over the flank, {at}."),
+        _curves(
+            flank,
+            [measures.of(1.0, "um") * np.asarray(o.transmission_error_mm) for o in flank.loads],
+            f"transmission error [{measures.unit('um')}]",
+            "Transmission error over one base pitch: approach along the line of action, by the "
+            "load.",
+            measures,
+        ),
+        _curves(
+            flank,
+            [measures.of(1.0, "mm") * np.asarray(flank.lines_mm)],
+            f"length of contact lines [{measures.unit('mm')}]",
+            "Length of all contact lines together over one base pitch.",
+            measures,
+        ),
+    ]
+
+
+def _picture(
+    flank: FlankContact,
+    values: Sequence[Sequence[float]],
+    unit: str,
+    name: str,
+    measures: Measures,
+) -> tuple[list[dict[str, Any]], dict[str, Any]]:
+    """Traces and layout of values over the flank, with contact lines at one moment."""
+    length, factor = measures.of(1.0, "mm"), measures.of(1.0, unit)
+    x, y = (length * np.asarray(v) for v in (flank.path_mm, flank.place_mm))
+    z = [[float(f"{factor * v:.4g}") for v in row] for row in values]
+    said = f"s %{{x:.4g}}, y %{{y:.4g}} {measures.unit('mm')}: %{{z:.4g}} {measures.unit(unit)}"
+    title = f"{name}<br>[{measures.unit(unit)}]"
+    trace = heat(
+        [round(float(v), 5) for v in x],
+        [round(float(v), 5) for v in y],
+        z,
+        title,
+        f"{said}<extra></extra>",
+        colorscale="Viridis",
+        zmin=0.0,
+    )
+    traces = [trace, *_moment(flank, length)]
+    half = 0.5 * length * flank.face_width_mm
+    plot = layout(
+        axis(f"position s on the path of contact [{measures.unit('mm')}]"),
+        axis(f"place y across the face [{measures.unit('mm')}]", range=[-half, half]),
+        HEIGHT,
+        showlegend=False,
+    )
+    return traces, plot
+
+
+def _moment(flank: FlankContact, length: float) -> list[dict[str, Any]]:
+    """Contact lines at one moment; length: of a millimetre in the shown unit."""
+    slope = np.tan(np.radians(flank.base_helix_angle_deg))
+    half = 0.5 * flank.face_width_mm
+    low, high = flank.path_mm[0], flank.path_mm[-1]
+    traces = []
+    first = low - slope * half + 0.5 * flank.base_pitch_mm
+    for middle in np.arange(first, high + slope * half, flank.base_pitch_mm):
+        ends = np.array([-half, half])
+        if slope > 0.0:
+            ends = np.clip((np.array([low, high]) - middle) / slope, -half, half)
+        s = np.clip(middle + slope * ends, low, high)
+        place = [[round(float(v * length), 5) for v in each] for each in (s, ends)]
+        traces.append(curve(*place, "#ffffff", 2.0, hoverinfo="skip"))
+    return traces
+
+
+def _curves(
+    flank: FlankContact, values: Sequence[Any], head: str, caption: str, measures: Measures
+) -> Figure:
+    """Plot values over one base pitch of travel, one curve a load where there are several."""
+    x = [round(measures.of(v, "mm"), 5) for v in flank.travel_mm]
+    several = len(values) == len(flank.loads) and len(values) > 1
+    traces = []
+    for k, each in enumerate(values):
+        y = [float(f"{v:.6g}") for v in each]
+        trace = curve(x, y, series(k + 1), 2.0, DASHES[k % len(DASHES)], hover="%{y:.4g}")
+        name = f"at {100.0 * flank.loads[k].load:g} %" if several else ""
+        traces.append(trace | {"name": name, "showlegend": several})
+    plot = layout(
+        axis(f"travel [{measures.unit('mm')}]"), axis(head, rangemode="tozero"), 300, hovermode="x"
+    )
+    plot["margin"] |= {"t": 44 if several else 24}
+    return Figure(traces, plot, caption)
+
+
+def _loads(flank: FlankContact, measures: Measures) -> Table:
+    """Line loads, stresses, errors and stiffness at every load, beside ISO 6336-1."""
+    each = flank.loads
+    micro, stiff = measures.unit("um"), measures.unit(STIFFNESS)
+    waves = zip(*(load.harmonics_mm for load in each), strict=True)
+    unloaded = Cell("", "–")  # there is no mesh stiffness
+    by_iso = {
+        "c_γα of ISO 6336-1": flank.iso_mesh_stiffness_MPa,
+        "c' of ISO 6336-1, of one pair": flank.iso_single_stiffness_MPa,
+    }
+    rows = [
+        *side_by_side(each, measures, "forces"),
+        *side_by_side(each, measures, "motion"),
+        *(
+            [f"harmonic {k} [{micro}]", *(cell(v, "um", measures) for v in wave)]
+            for k, wave in enumerate(waves, 1)
+        ),
+        *(
+            [head, *(c if o.normal_force_N else unloaded for c, o in zip(cells, each, strict=True))]
+            for head, *cells in side_by_side(each, measures, "stiffness")
+        ),
+        *(
+            [f"{name} [{stiff}]", *[cell(value, STIFFNESS, measures)] * len(each)]
+            for name, value in by_iso.items()
+        ),
+    ]
+    names = [f"{100.0 * load.load:g} %" for load in each]
+    caption = (
+        "Line load, contact stress, transmission error and stiffness at each load; s from the "
+        "pitch point, y from the middle of the face towards the end where contact begins."
+    )
+    return Table("loads", ["", *names], rows, caption, across=True)
+
+
+def _tables(flank: FlankContact, measures: Measures) -> list[Table]:
+    """CSV files: errors over a base pitch, and the flank at every load."""
+    listed: list[tuple[str, Sequence[float], str]] = [
+        ("travel", flank.travel_mm, "mm"),
+        ("contact lines", flank.lines_mm, "mm"),
+    ]
+    for load in flank.loads:
+        head = f"transmission error at {100.0 * load.load:g} %"
+        listed.append((head, load.transmission_error_mm, "um"))
+    y, s = (v.ravel() for v in np.meshgrid(flank.place_mm, flank.path_mm, indexing="ij"))
+    over: list[tuple[str, Sequence[float], str]] = [("s", s.tolist(), "mm"), ("y", y.tolist(), "mm")]
+    for load in flank.loads:
+        at = f"at {100.0 * load.load:g} %"
+        line, stress = (
+            [v for row in rows for v in row]
+            for rows in (load.line_load_N_per_mm, load.contact_stress_MPa)
+        )
+        over += [(f"line load {at}", line, "N_per_mm"), (f"contact stress {at}", stress, "MPa")]
+    return [columns("transmission error", listed, measures), columns("flank", over, measures)]
