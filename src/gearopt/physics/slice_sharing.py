@@ -84,17 +84,17 @@ def _around(links: Any) -> Any:
 
 def _solved(diagonal: Any, links: Any, first: Any, second: Any) -> tuple[Any, Any]:
     """Return the solutions (..., m) of two right sides; off the diagonal stand minus the links."""
-    d, l, a, b = (np.moveaxis(x, -1, 0).copy() for x in (diagonal, links, first, second))
-    for k in range(1, len(d)):
-        factor = l[k - 1] / d[k - 1]
-        d[k] -= factor * l[k - 1]
+    own, held, a, b = (np.moveaxis(x, -1, 0).copy() for x in (diagonal, links, first, second))
+    for k in range(1, len(own)):
+        factor = held[k - 1] / own[k - 1]
+        own[k] -= factor * held[k - 1]
         a[k] += factor * a[k - 1]
         b[k] += factor * b[k - 1]
-    a[-1] /= d[-1]
-    b[-1] /= d[-1]
-    for k in range(len(d) - 2, -1, -1):
-        a[k] = (a[k] + l[k] * a[k + 1]) / d[k]
-        b[k] = (b[k] + l[k] * b[k + 1]) / d[k]
+    a[-1] /= own[-1]
+    b[-1] /= own[-1]
+    for k in range(len(own) - 2, -1, -1):
+        a[k] = (a[k] + held[k] * a[k + 1]) / own[k]
+        b[k] = (b[k] + held[k] * b[k + 1]) / own[k]
     return np.moveaxis(a, 0, -1), np.moveaxis(b, 0, -1)
 
 

@@ -121,7 +121,16 @@ def solid(
 
 
 CORNERS = np.array(
-    [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]],
+    [
+        [-1, -1, -1],
+        [1, -1, -1],
+        [1, 1, -1],
+        [-1, 1, -1],
+        [-1, -1, 1],
+        [1, -1, 1],
+        [1, 1, 1],
+        [-1, 1, 1],
+    ],
     float,
 )
 
@@ -260,7 +269,9 @@ def contact_lines(
             for i in range(len(k)):
                 loads.append((0, int(j[i]), float(rho[i])))
                 teeth = (hand * (k - k[i])).astype(int)
-                seen.append([(int(a), int(b), float(c)) for a, b, c in zip(teeth, j, rho, strict=True)])
+                seen.append(
+                    [(int(a), int(b), float(c)) for a, b, c in zip(teeth, j, rho, strict=True)]
+                )
         rows = body.compliances(loads, seen, wide)
         at = 0
         for n, (_, k, _, _) in enumerate(lines):

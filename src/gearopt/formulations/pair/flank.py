@@ -92,21 +92,23 @@ class FlankMesh:
         length = np.where(part > 0.0, part, 1.0) * wide
         return Springs(self.compliances.contact / length, bed, links, self.sliced.coupling)
 
-    @cached_property
-    def separations(self) -> Array:
-        """What lacks to contact of unloaded slices [mm] (p, n, m), infinite where none is."""
+    def separated(self, reliefs: tuple[Relief, Relief]) -> Array:
+        """Return what lacks to contact of unloaded slices [mm] (..., p, n, m) with tip reliefs.
+
+        Infinite where none is; reliefs of pinion and wheel, of arrays (N,) for N designs.
+        """
         part, at = self._parts
         path, flat = self.sliced.path, at.reshape(len(at), -1)
-        gaps = np.broadcast_to(self.modifications.gaps(self.face), at.shape)
-        for relief, x in zip(self.reliefs, (path.end - flat, flat - path.start), strict=True):
-            gaps = gaps + relief.removed(np.maximum(x, 0.0)).reshape(at.shape)
-        return np.where(part > 0.0, gaps, np.inf)
+        ends = path.end - flat, flat - path.start
+        removed = [r.removed(np.maximum(x, 0.0)) for r, x in zip(reliefs, ends, strict=True)]
+        gaps = (removed[0] + removed[1]).reshape(*removed[0].shape[:-2], *at.shape)
+        return np.where(part > 0.0, gaps + self.modifications.gaps(self.face), np.inf)
 
     @cached_property
     def sharing(self) -> SliceSharing:
         """Forces (l, p, n, m), approach (l, p), gaps (l, p, n, m) of every load."""
         forces = self.sliced.force * np.array(self.loads)
-        return share_slices(self.springs, self.separations[None], forces[:, None])
+        return share_slices(self.springs, self.separated(self.reliefs)[None], forces[:, None])
 
     @cached_property
     def lines(self) -> Array:

@@ -34,6 +34,9 @@ class FlankLoad:
     contact_stress_place_mm: Annotated[float, Shown("there at y", "motion")]
     mean_transmission_error_mm: Annotated[float, Shown("transmission error, mean", "motion", "um")]
     peak_to_peak_mm: Annotated[float, Shown("peak to peak", "motion", "um")]
+    plain_peak_to_peak_mm: Annotated[
+        float | None, Shown("the same without relief", "motion", "um")
+    ] = None
     harmonics_mm: Columns
     mean_mesh_stiffness_MPa: Annotated[
         float, Shown("mesh stiffness, mean", "stiffness", "N_per_mm_um")

@@ -5,8 +5,8 @@ cos(beta)), whose compliance a level of the ladder gives; along the transverse l
 per face width it is that over cos(beta_b), as ISO 6336-1 has c' proportional to cos(beta). What a
 slice gives way at its contact (Hertz) is its own. The rest, tooth and body, is a bed of springs on
 which neighbouring slices hold each other as strips of a plate do: stiffness k u - (k lambda^2 u')',
-lambda = `HOLD` times the height of the load over the root circle. Towards the side faces the bed of helical teeth is softer (`END`). Under
-an even load a spur pair of many slices is that of one.
+lambda = `HOLD` times the height of the load over the root circle. Towards the side faces the bed of
+helical teeth is softer (`END`). Under an even load a spur pair of many slices is that of one.
 """
 
 from collections.abc import Callable
@@ -134,7 +134,10 @@ def _virtual(gear: Gear) -> Gear:
 
 
 def sliced(
-    pair: GearPair, normal: ElasticPair, compliance: Callable[[Any], Any], force: float,
+    pair: GearPair,
+    normal: ElasticPair,
+    compliance: Callable[[Any], Any],
+    force: float,
     coupling: float,
 ) -> Sliced:
     """Return a pair in slices on its usable path; see `Sliced`."""

@@ -1,11 +1,10 @@
-"""kind = "pair": a spur gear pair, sized or given, and how its teeth share the load."""
+"""kind = "pair": a gear pair, sized or given, and how its teeth share the load."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive.design import DriveDesign, drive_design
-from gearopt.formulations.pair.contact import PairMesh
 from gearopt.formulations.pair.relief import parametric
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.plan import Model
@@ -13,6 +12,7 @@ from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.pareto.objectives import Tradeoff
 from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import untyped
+from gearopt.physics.gears import GearPair
 from gearopt.scenes import drive
 from gearopt.scenes.drive.explain import answers as of_drive
 from gearopt.scenes.drive.rating import rated
@@ -21,17 +21,26 @@ from gearopt.scenes.drive.tables.blanks import body_flaws
 from gearopt.scenes.explaining.explanations import by_solving
 from gearopt.scenes.kind import Kind, Trades, examples_in
 from gearopt.scenes.pair import relief as relief_part
-from gearopt.scenes.pair.contact import contact_of, mesh_of
-from gearopt.scenes.pair.flank import flank_contact_of, flank_mesh_of, in_slices
+from gearopt.scenes.pair.contact import Materials, contact_of, mesh_of
+from gearopt.scenes.pair.flank import (
+    flank_contact_of,
+    flank_mesh_of,
+    flank_problem,
+    in_slices,
+    relieved_flank,
+)
 from gearopt.scenes.pair.notes import contact_assumptions, flank_assumptions
 from gearopt.scenes.pair.relief import relieved
-from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.scene import Scene
 from gearopt.scenes.plan import Step
 from gearopt.scenes.reading.ask import Ask, unseeded, without_method
 
 METHODS = ("exact", "mpec")  # its own
 NOTHING = "the gears are given, so that nothing is chosen"
+SPUR_FRONT = (
+    "a front of reliefs is drawn for spur pairs without a table [flank]: gearopt solve FILE finds "
+    "one relief of helical gears"
+)
 
 
 def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
@@ -70,8 +79,7 @@ def with_contact(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """Gears with their contact, by slices of the face where `in_slices`."""
     assert known is not None
     design = drive_design(known.design)
-    stage = design.stages[0]
-    pair, materials = stage.pair, (stage.pinion_material, stage.wheel_material)
+    pair, materials = _pair_of(design)
     seconds = ask.budget.seconds
     try:
         if in_slices(scene, pair):
@@ -99,8 +107,13 @@ def with_relief(scene: Scene, ask: Ask, gears: Result | None) -> Result:
     Limits of gears that are given are those of their part: no relief changes them.
     """
     assert gears is not None
-    design, mesh = _mesh(scene, gears)
-    best, relief = relieved(scene, mesh, ask)
+    design = drive_design(gears.design)
+    pair, materials = _pair_of(design)
+    if in_slices(scene, pair):
+        best, design = _with_flank_relief(scene, ask, design)
+    else:
+        best, relief = relieved(scene, mesh_of(scene, pair, materials), ask)
+        design = replace(design, relief=relief)
     sized = gears.value is not None
     limited = sized or bool(gears.limits)
     parts = (replace(gears, name="gears", design={}, report={}),) if limited else ()
@@ -108,11 +121,32 @@ def with_relief(scene: Scene, ask: Ask, gears: Result | None) -> Result:
     return replace(
         best,
         name="pair",
-        design=untyped(replace(design, relief=relief)),
+        design=untyped(design),
         limits=gears.limits if sized else {},
         report=gears.report | best.report | ({"notes": notes} if notes else {}),
         parts=parts,
     )
+
+
+def _with_flank_relief(scene: Scene, ask: Ask, design: DriveDesign) -> tuple[Result, DriveDesign]:
+    """Result of the relief of a pair in slices, and its design with the flank that it makes."""
+    pair, materials = _pair_of(design)
+    mesh, level = flank_mesh_of(scene, pair, materials)
+    best, reliefs = relieved_flank(scene, mesh, ask)
+    if reliefs is None or design.flank is None:
+        return best, design
+    flank = flank_contact_of(scene, replace(mesh, reliefs=reliefs), level, materials)
+    loads = tuple(
+        replace(load, plain_peak_to_peak_mm=plain.peak_to_peak_mm)
+        for load, plain in zip(flank.loads, design.flank.loads, strict=True)
+    )
+    return best, replace(design, flank=replace(flank, loads=loads))
+
+
+def _pair_of(design: DriveDesign) -> tuple[GearPair, Materials]:
+    """Gears of a design, and names of their materials."""
+    stage = design.stages[0]
+    return stage.pair, (stage.pinion_material, stage.wheel_material)
 
 
 def given(scene: Scene, ask: Ask, known: Result | None) -> Result:
@@ -157,13 +191,16 @@ def idle(scene: Scene, method: str | None) -> dict[str, str]:
 
 def _unseeded(scene: Scene, method: str | None) -> dict[str, str]:
     asked = scene.relief
-    if asked is not None and method is None and not _proven(asked):
+    if asked is not None and method is None and not _proven(scene):
         return {}
     return unseeded(method)
 
 
-def _proven(asked: ReliefTable) -> bool:
-    """Return whether a relief has a proven search."""
+def _proven(scene: Scene) -> bool:
+    """Return whether the relief has a proven search."""
+    asked = scene.relief
+    if asked is None or scene.helical or scene.flank:
+        return False
     return asked.minimise in parametric.PROVEN and not asked.robust
 
 
@@ -172,16 +209,21 @@ def methods_to_compare(scene: Scene) -> tuple[str, ...]:
     if scene.relief is not None:
         if scene.relief.free:
             return ("exact",)
-        exact = METHODS if _proven(scene.relief) else ()
+        exact = METHODS if _proven(scene) else ()
         return (*exact, "annealing", "nsga2")
     return drive.methods_to_compare(_to_size(scene).drive)
 
 
 def posed(scene: Scene, method: str) -> Model:
     """Return the problem of the relief, else that which sizes the pair; SolveError of neither."""
-    if scene.relief is not None:
-        return relief_part.model(scene, _mesh_of_gears(scene, Ask()))
-    return drive.posed(_to_size(scene).drive, method)
+    if scene.relief is None:
+        return drive.posed(_to_size(scene).drive, method)
+    pair, materials = _gears_of(scene, Ask())
+    if in_slices(scene, pair):
+        mesh, _ = flank_mesh_of(scene, pair, materials)
+        problem, _ = flank_problem(scene, mesh)
+        return Model(problem, "Amounts and lengths of relief, by slices of the face", "mm")
+    return relief_part.model(scene, mesh_of(scene, pair, materials))
 
 
 def objectives(scene: Scene) -> Mapping[str, str]:
@@ -193,24 +235,28 @@ def objectives(scene: Scene) -> Mapping[str, str]:
 
 def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
     """Return the problem of a front of reliefs, else of sizes."""
-    if scene.relief is not None:
-        return relief_part.traded(scene, _mesh_of_gears(scene, ask), names)
-    return drive.KIND.trades.traded(_to_size(scene).drive, names, ask)
+    if scene.relief is None:
+        return drive.KIND.trades.traded(_to_size(scene).drive, names, ask)
+    pair, materials = _gears_of(scene, ask)
+    if in_slices(scene, pair):
+        raise SolveError(SPUR_FRONT)
+    try:
+        mesh = mesh_of(scene, pair, materials, ask.budget.seconds)
+    except TimeoutError as reason:
+        raise SolveError(str(reason)) from None
+    return relief_part.traded(scene, mesh, names)
 
 
-def _mesh_of_gears(scene: Scene, ask: Ask) -> PairMesh:
-    """Return the gears in mesh, sized where they are not given; SolveError where there are none."""
+def _gears_of(scene: Scene, ask: Ask) -> tuple[GearPair, Materials]:
+    """Return the gears, sized where they are not given; SolveError where there are none."""
     if scene.given:
-        try:
-            return mesh_of(scene, scene.given_pair, seconds=ask.budget.seconds)
-        except TimeoutError as reason:
-            raise SolveError(str(reason)) from None
+        return scene.given_pair, ("", "")
     sized = drive.KIND.solve(scene.drive, ask.beforehand)
     if sized.status == "infeasible":
         raise SolveError("no pair of gears meets the limits, so that there is none to relieve")
     if sized.value is None:
         raise SolveError("no pair of gears was found in time, so that there is none to relieve")
-    return _mesh(scene, sized)[1]
+    return _pair_of(drive_design(sized.design))
 
 
 def _to_size(scene: Scene) -> Scene:

@@ -229,9 +229,7 @@ def _webs(scene: Scene, pair: GearPair, materials: Materials) -> Iterator[str]:
             )
 
 
-def _validity(
-    pair: GearPair, elastic: ElasticPair, level: str, coupling: str
-) -> Iterator[str]:
+def _validity(pair: GearPair, elastic: ElasticPair, level: str, coupling: str) -> Iterator[str]:
     """Yield what the models do not cover of these gears, and flaws that a designer may accept."""
     if LEVELS[level].body == "half plane" and coupling in ("ring torsion", "finite elements"):
         yield (

@@ -1,6 +1,7 @@
 """Contact over the flank of a pair of a file: helical gears, or a table [flank]."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -8,7 +9,11 @@ from gearopt.errors import SolveError
 from gearopt.formulations.pair.contact import column, compliance_of
 from gearopt.formulations.pair.flank import FlankMesh, Modifications, flank_loads
 from gearopt.formulations.pair.flank_design import FlankContact
-from gearopt.formulations.pair.relief.meshing import NO_RELIEF, Relief
+from gearopt.formulations.pair.flank_relief import problem, ranges_of
+from gearopt.formulations.pair.relief.meshing import Relief
+from gearopt.formulations.pair.relief.parametric import Ranges
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Result
 from gearopt.physics.contact_lines import length_range, mean_length
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.contact import usable_path
@@ -24,9 +29,14 @@ from gearopt.scenes.pair.contact import (
     yielding,
 )
 from gearopt.scenes.pair.flank_tables import FlankTable
+from gearopt.scenes.pair.relief import keyed, loads_of, searched
 from gearopt.scenes.pair.scene import Scene
+from gearopt.scenes.reading.ask import Ask
 from gearopt.units import Quantity
 
+IN_SLICES = (
+    "not proven: of the transmission error of contact by slices across the face there is no bound"
+)
 IDLE = 0.02  # part of the contact lines that carries nothing, from which on it is told
 
 
@@ -38,7 +48,10 @@ def in_slices(scene: Scene, pair: GearPair) -> bool:
 def flank_mesh_of(
     scene: Scene, pair: GearPair, materials: Materials = ("", ""), seconds: float | None = None
 ) -> tuple[FlankMesh, str]:
-    """Return a pair of a file in slices, and the level of its teeth; errors as of `teeth_of`."""
+    """Return a pair of a file in slices without relief, and the level of its teeth.
+
+    Errors as of `teeth_of`.
+    """
     table = scene.flank or FlankTable()
     path = usable_path(pair)
     check_length(scene, float(path.transverse_ratio))
@@ -60,7 +73,6 @@ def flank_mesh_of(
             scene.sharing.positions,
             made.loads,
             modifications,
-            _reliefs(scene, float(path.base_pitch)),
         )
         least = float(mesh.compliances.structure.min())
     except ImportError as reason:  # of finite elements, an extra
@@ -74,20 +86,10 @@ def flank_mesh_of(
     return mesh, made.level
 
 
-def _reliefs(scene: Scene, pitch: float) -> tuple[Relief, Relief]:
-    """Return the tip relief of a file that gives it; pitch [mm] of the base circle."""
-    asked = scene.relief
-    if asked is None or not asked.given:
-        return NO_RELIEF, NO_RELIEF
-    assert asked.length is not None
-    given = Relief(asked.amount[0].value, float(asked.length[0]) * pitch, asked.exponent)
-    return given, given
-
-
 def flank_contact_of(
     scene: Scene, mesh: FlankMesh, level: str, materials: Materials
 ) -> FlankContact:
-    """Return the contact over the flank of a pair of a file."""
+    """Return the contact over the flank of a pair of a file, with the reliefs of its mesh."""
     sliced, face, known = mesh.sliced, mesh.face, LEVELS[level]
     pair, path, elastic = sliced.pair, sliced.path, sliced.normal
     errors = (*known.error, *known.wider)
@@ -152,3 +154,23 @@ def _idle(mesh: FlankMesh, shares: Sequence[float]) -> Iterator[str]:
                 f"At {100.0 * load:g} % of the duty's torque {100.0 * share:.2g} % of the length "
                 "of the contact lines carries nothing."
             )
+
+
+def relieved_flank(
+    scene: Scene, mesh: FlankMesh, ask: Ask
+) -> tuple[Result, tuple[Relief, Relief] | None]:
+    """Return the result of the search for the tip relief of a pair in slices, and the reliefs."""
+    problem, ranges = flank_problem(scene, mesh)
+    assert scene.relief
+    return searched(scene.relief, problem, ranges, ask, IN_SLICES)
+
+
+def flank_problem(scene: Scene, mesh: FlankMesh) -> tuple[Problem, Ranges]:
+    """Return the problem of the relief of a pair in slices, and its ranges."""
+    asked = scene.relief
+    assert asked
+    low, high = (end.value for end in asked.amount)
+    lengths = None if asked.length is None else (float(asked.length[0]), float(asked.length[1]))
+    ranges = ranges_of(mesh, (low, high), lengths, asked.exponent)
+    unkeyed = problem(replace(mesh, loads=loads_of(scene)), ranges)
+    return replace(unkeyed, variables=keyed(unkeyed)), ranges

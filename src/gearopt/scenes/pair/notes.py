@@ -21,9 +21,8 @@ def flank_assumptions(scene: Scene, made: FlankContact, pair: GearPair) -> list[
         "application and dynamic factors. Teeth are taken to meet in the plane of action; "
         "deflected ones without relief meet before it, at the edge of a tip.",
         f"{made.slices} slices across the face, spur gears of the normal section by {made.level}, "
-        f"in plane {made.plane}; the contact compliance is that at the torque of the duty, at every "
-        "load. Slices of a tooth hold each other as strips of a plate do; that the side faces are "
-        "free, and one corner of a helical tooth sharp, is left out.",
+        f"in plane {made.plane}; the contact compliance is that at the torque of the duty, at "
+        "every load. Slices of a tooth hold each other as strips of a plate do.",
         f"All slices are coupled by {coupled:.3g} µm/kN ({made.coupling}).",
         *_held(scene, made),
         *_light(line_load(scene, pair)),

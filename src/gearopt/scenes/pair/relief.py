@@ -84,10 +84,19 @@ def _parametric(asked: ReliefTable, mesh: Mesh, ask: Ask) -> tuple[Result, Remov
     """Result with the best amounts and lengths; where they are given, what these do."""
     ranges = _ranges(asked, mesh)
     problem = _posed(asked, mesh, ranges)
+    why = UNBOUND if "exact" in problem.methods else ROBUST if asked.robust else UNPROVEN
+    result, reliefs = searched(asked, problem, ranges, ask, why)
+    return result, None if reliefs is None else Removed.of(mesh, reliefs)
+
+
+def searched(
+    asked: ReliefTable, problem: Problem, ranges: Ranges, ask: Ask, why: str
+) -> tuple[Result, tuple[Relief, Relief] | None]:
+    """Result with the best reliefs of pinion and wheel; why: there may be no bound."""
     if asked.given:
         point = problem.bounds()[0]
         result = _united(evaluate(problem, point), asked.minimise)
-        return result, Removed.of(mesh, parametric.at_point(point, ranges))
+        return result, parametric.at_point(point, ranges)
     _check_method(problem, ask.method)
     watch = in_part(ask.watch, _unit(asked.minimise))
     method = ask.method or ("exact" if "exact" in problem.methods else DEFAULT)
@@ -96,11 +105,10 @@ def _parametric(asked: ReliefTable, mesh: Mesh, ask: Ask) -> tuple[Result, Remov
     if result.value is None or outcome.x is None:
         return result, None
     if result.bound is None and method != "exact":
-        why = UNBOUND if "exact" in problem.methods else ROBUST if asked.robust else UNPROVEN
         result = replace(result, message=why)
     if notes := _ends(problem, outcome.x):
         result = replace(result, report=result.report | {"notes": notes})
-    return result, Removed.of(mesh, parametric.at_point(outcome.x, ranges))
+    return result, parametric.at_point(outcome.x, ranges)
 
 
 def _ends(problem: Problem, point: Array) -> list[str]:
@@ -170,10 +178,10 @@ def _posed(asked: ReliefTable, mesh: Mesh, ranges: Ranges) -> Problem:
     if not asked.robust:
         return _problem(asked, mesh, ranges)
     problem = robust_problem(mesh, ranges, _tolerance(asked, mesh))
-    return replace(problem, variables=_keyed(problem))
+    return replace(problem, variables=keyed(problem))
 
 
-def _keyed(problem: Problem) -> tuple[Var, ...]:
+def keyed(problem: Problem) -> tuple[Var, ...]:
     """Return the variables of a relief with the places of their ranges in the file."""
     return tuple(replace(v, key=KEYS[v.name]) for v in problem.variables)
 
@@ -197,7 +205,7 @@ def _problem(
         terms = unkeyed.evaluate(x, p)
         return replace(terms, minimise={n: terms.minimise[own] for n, own in names.items()})
 
-    return replace(unkeyed, variables=_keyed(unkeyed), evaluate=evaluate)
+    return replace(unkeyed, variables=keyed(unkeyed), evaluate=evaluate)
 
 
 def model(scene: Scene, made: PairMesh) -> Model:

@@ -112,7 +112,7 @@ class Scene(ProblemFile):
     @property
     def helical(self) -> bool:
         """Return whether gears are helical, or may be chosen so."""
-        tables = (self.gears, *self.stage)
+        tables: tuple[Any, ...] = (self.gears, *self.stage)
         angles = [table.helix_angle for table in tables if table.helix_angle is not None]
         return any(angle.number for each in angles for angle in values_of(each))
 

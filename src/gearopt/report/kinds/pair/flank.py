@@ -244,8 +244,8 @@ def _moment(flank: FlankContact, length: float) -> list[dict[str, Any]]:
         if slope > 0.0:
             ends = np.clip((np.array([low, high]) - middle) / slope, -half, half)
         s = np.clip(middle + slope * ends, low, high)
-        place = [[round(float(v * length), 5) for v in each] for each in (s, ends)]
-        traces.append(curve(*place, "#ffffff", 2.0, hoverinfo="skip"))
+        x, y = ([round(float(v * length), 5) for v in each] for each in (s, ends))
+        traces.append(curve(x, y, "#ffffff", 2.0, hoverinfo="skip"))
     return traces
 
 
@@ -312,7 +312,10 @@ def _tables(flank: FlankContact, measures: Measures) -> list[Table]:
         head = f"transmission error at {100.0 * load.load:g} %"
         listed.append((head, load.transmission_error_mm, "um"))
     y, s = (v.ravel() for v in np.meshgrid(flank.place_mm, flank.path_mm, indexing="ij"))
-    over: list[tuple[str, Sequence[float], str]] = [("s", s.tolist(), "mm"), ("y", y.tolist(), "mm")]
+    over: list[tuple[str, Sequence[float], str]] = [
+        ("s", s.tolist(), "mm"),
+        ("y", y.tolist(), "mm"),
+    ]
     for load in flank.loads:
         at = f"at {100.0 * load.load:g} %"
         line, stress = (
