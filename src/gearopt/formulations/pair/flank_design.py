@@ -58,9 +58,11 @@ class FlankContact:
     """Contact over the flank of a pair of gears, helical or spur, by slices across the face.
 
     level, plane, coupling, error, bores, iso: as of `PairContact`. crowning, helix_correction,
-    misalignment: gaps of both flanks together. lengths of all contact lines: least, mean, largest,
-    by closed form. path_mm: positions s of the columns of a flank; place_mm: y of its rows, from
-    the middle of the face towards the end where contact begins. travel_mm: over one base pitch.
+    misalignment: gaps of both flanks together. relief: amounts at the tips of pinion and wheel,
+    lengths on the path and diameters where it starts. contact_lines: least, mean and largest length
+    of all, by closed form; lines_mm: at every travel. path_mm: positions s of the columns of a
+    flank; place_mm: y of its rows, from the middle of the face towards the end where contact
+    begins. travel_mm: over one base pitch.
     """
 
     level: str
@@ -76,6 +78,7 @@ class FlankContact:
     misalignment_mm: float
     relief_mm: tuple[float, float]
     relief_length_mm: tuple[float, float]
+    relief_diameters_mm: tuple[float, float]
     base_pitch_mm: float
     base_helix_angle_deg: float
     face_width_mm: float

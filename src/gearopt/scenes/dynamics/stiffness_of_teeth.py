@@ -25,6 +25,10 @@ def of_teeth(scene: Scene, ask: Ask) -> tuple[Wave, list[str]]:
     """
     assert scene.mesh.pair is not None and scene.pinion.torque is not None
     named, design = scene.mesh.pair, scene.mesh.pair.result(ask).design
+    if "contact" not in design:
+        rule = "has its contact by slices of the face: the mesh stiffness is taken from spur pairs"
+        tell = "Take the file of a spur pair without a table [flank]"
+        raise SceneError(named.file, "", "", rule, tell)
     contact: PairContact = typed(PairContact, design["contact"], "contact")
     if others := list(_others(scene, drive_design(design))):
         rule = f"has other teeth than this file: {'; '.join(others)}"

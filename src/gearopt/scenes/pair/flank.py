@@ -1,9 +1,8 @@
 """Contact over the flank of a pair of a file: helical gears, or a table [flank]."""
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-
-import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.formulations.pair.contact import column, compliance_of
@@ -16,8 +15,9 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.physics.contact_lines import length_range, mean_length
 from gearopt.physics.gears import GearPair
-from gearopt.physics.geometry.contact import usable_path
+from gearopt.physics.geometry.contact import diameters_at, usable_path
 from gearopt.physics.geometry.tooth import base_helix_angle
+from gearopt.physics.mesh_cycle import NARROW
 from gearopt.physics.tooth.ladder import LEVELS, USUAL
 from gearopt.physics.tooth.slices import Sliced
 from gearopt.scenes.pair.contact import (
@@ -28,7 +28,7 @@ from gearopt.scenes.pair.contact import (
     teeth_of,
     yielding,
 )
-from gearopt.scenes.pair.flank_tables import FlankTable
+from gearopt.scenes.pair.flank_tables import ALONG, FlankTable
 from gearopt.scenes.pair.relief import keyed, loads_of, searched
 from gearopt.scenes.pair.scene import Scene
 from gearopt.scenes.reading.ask import Ask
@@ -61,12 +61,10 @@ def flank_mesh_of(
         made = teeth_of(scene, pair, materials, seconds)
         compliance = compliance_of(made.elastic, made.level, force)
         given = isinstance(scene.sharing.coupling, Quantity)
-        inclined = 1.0 if given else float(np.cos(base_helix_angle(pair.pinion)))
+        inclined = 1.0 if given else math.cos(base_helix_angle(pair.pinion))
         coupling = made.coupling / inclined
         sliced = Sliced(pair, path, made.elastic, compliance, force, coupling)
-        modifications = Modifications(
-            *(table.millimetres(n) for n in ("crowning", "helix_correction", "misalignment"))
-        )
+        modifications = Modifications(*(table.millimetres(name) for name in ALONG))
         mesh = FlankMesh.of(
             sliced,
             table.slices,
@@ -98,7 +96,7 @@ def flank_contact_of(
     loads = flank_loads(mesh)
     beyond = doubts_of(scene, pair, elastic, level, materials)
     most = max(load.largest_contact_stress_MPa for load in loads)
-    held = [relief.amount if relief.amount else 0.0 for relief in mesh.reliefs]
+    held = [float(relief.amount) for relief in mesh.reliefs]
     long = [float(relief.length) if relief.amount else 0.0 for relief in mesh.reliefs]
     bores = [
         float(bore * gear.root_diameter / own.root_diameter)
@@ -116,10 +114,14 @@ def flank_contact_of(
         crowning_mm=mesh.modifications.crowning,
         helix_correction_mm=mesh.modifications.helix_correction,
         misalignment_mm=mesh.modifications.misalignment,
-        relief_mm=(float(held[0]), float(held[1])),
+        relief_mm=(held[0], held[1]),
         relief_length_mm=(long[0], long[1]),
+        relief_diameters_mm=(
+            float(diameters_at(pair, path, path.end - long[0])[0]),
+            float(diameters_at(pair, path, path.start + long[1])[1]),
+        ),
         base_pitch_mm=float(path.base_pitch),
-        base_helix_angle_deg=float(np.degrees(np.arctan(face.slope))),
+        base_helix_angle_deg=math.degrees(math.atan(face.slope)),
         face_width_mm=face.width,
         contact_ratio=float(path.transverse_ratio),
         overlap_ratio=float(pair.overlap_ratio),
@@ -139,8 +141,8 @@ def _lengths(pair: GearPair, ratio: float, mean: float) -> tuple[float, float, f
     """Return least, mean and largest length [mm] of the contact lines, by closed form."""
     overlap = float(pair.overlap_ratio)
     if overlap == 0.0:
-        whole = int(np.floor(ratio + 1e-9))
-        most = whole if ratio - whole < 1e-9 else whole + 1
+        whole = int(ratio + NARROW)
+        most = whole if ratio - whole < NARROW else whole + 1
         return whole * float(pair.face_width), mean, most * float(pair.face_width)
     low, high = length_range(ratio, overlap)
     return low * mean, mean, high * mean

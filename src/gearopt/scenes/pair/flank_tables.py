@@ -9,6 +9,8 @@ from gearopt.units import Quantity
 
 GAP = quantity("length", "10 um", "1 mm", signed=True)
 SLICES = 41
+FEWEST = 11  # slices of what varies along the face
+ALONG = ("crowning", "helix_correction", "misalignment")
 
 
 class FlankTable(Table):
@@ -33,6 +35,11 @@ class FlankTable(Table):
     slices: Annotated[int, whole(SLICES, 1, 201)] = Field(
         SLICES, description="Slices across the face"
     )
+
+    @property
+    def modified(self) -> bool:
+        """Return whether anything varies along the face."""
+        return any(self.millimetres(name) for name in ALONG)
 
     def millimetres(self, name: str) -> float:
         """Return a modification [mm], 0 where the file has none."""

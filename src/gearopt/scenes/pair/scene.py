@@ -13,7 +13,7 @@ from gearopt.scenes.drive.scene import DriveDuty
 from gearopt.scenes.drive.scene import Scene as Drive
 from gearopt.scenes.drive.tables.drive import Gears, Limits, Objective, StageTable, Teeth
 from gearopt.scenes.drive.tables.rating import LoadTable, RatingTable
-from gearopt.scenes.pair.flank_tables import FlankTable
+from gearopt.scenes.pair.flank_tables import FEWEST, SLICES, FlankTable
 from gearopt.scenes.pair.pair_flaws import check_level, check_pair
 from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.sharing_tables import SharingTable
@@ -118,6 +118,11 @@ class Scene(ProblemFile):
 
     def _check_slices(self) -> None:
         """Refuse what contact by slices, of helical gears or a table [flank], does not do."""
+        flank = self.flank
+        if flank and flank.slices < FEWEST and (self.helical or flank.modified):
+            what = "helical gears" if self.helical else "flanks that are modified along the face"
+            rule = f"is too few slices for {what}, which need {FEWEST}"
+            raise refuse(rule, SLICES, ("flank", "slices"))
         if self.relief is None or not (self.helical or self.flank):
             return
         of = "helical gears" if self.helical else "[flank]"

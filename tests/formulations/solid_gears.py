@@ -298,3 +298,16 @@ def contact_lines(
 def plane_widths(planes: Any) -> Any:
     """Return the width [mm] that every node plane stands for."""
     return np.gradient(planes) * np.where(np.isin(planes, planes[[0, -1]]), 0.5, 1.0)
+
+
+def shared(compliances: Any, load: float) -> tuple[Any, float]:
+    """Return forces [N] on points without gaps that share a load, and the approach [mm]."""
+    acts = np.ones(len(compliances), bool)
+    while True:
+        per = np.linalg.solve(compliances[np.ix_(acts, acts)], np.ones(int(acts.sum())))
+        approach = load / per.sum()
+        if (per >= 0.0).all():
+            forces = np.zeros(len(acts))
+            forces[acts] = approach * per
+            return forces, float(approach)
+        acts[np.flatnonzero(acts)[per < 0.0]] = False
