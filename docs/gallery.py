@@ -115,6 +115,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "unit_in_box": "Two stages whose centre distances are preferred numbers, by ISO 6336.",
     },
     "How the teeth of a spur pair share the load": {
+        "helical_pair": "A helical pair out of line: load and pressure over the flank.",
         "reference_pair": "Load shares, stiffness and transmission error of given gears.",
         "shifted_pair": "The same with profile shifts, in plane stress.",
         "pair_from_duty": "Duty and steel alone: sized by AGMA 2001, then its contact.",
