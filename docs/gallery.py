@@ -114,8 +114,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "elevator_box_rated": "Two stages, limited by the safety factors of AGMA 2001.",
         "unit_in_box": "Two stages whose centre distances are preferred numbers, by ISO 6336.",
     },
-    "How the teeth of a spur pair share the load": {
-        "helical_pair": "A helical pair out of line: load and pressure over the flank.",
+    "How the teeth of a pair share the load": {
         "reference_pair": "Load shares, stiffness and transmission error of given gears.",
         "shifted_pair": "The same with profile shifts, in plane stress.",
         "pair_from_duty": "Duty and steel alone: sized by AGMA 2001, then its contact.",
@@ -123,6 +122,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "paper_program": "Duty in, relieved gears out: sized by AGMA 2001, then the relief.",
         "undercut_pair": "Eight teeth: what undercut leaves of the path of contact.",
         "almost_two_pairs": "A contact ratio of 1.999, which a uniform grid takes for two.",
+        "helical_pair": "A helical pair out of line: load and pressure over the flank.",
     },
     "Strain wave gearing": {
         "strain_wave_base": "Teeth in contact, loads, stress against profile shift, cutter.",

@@ -1,7 +1,6 @@
 """Contact over the flank of a pair of a file: helical gears, or a table [flank]."""
 
 import math
-from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from gearopt.errors import SolveError
@@ -37,7 +36,6 @@ from gearopt.units import Quantity
 IN_SLICES = (
     "not proven: of the transmission error of contact by slices across the face there is no bound"
 )
-IDLE = 0.02  # part of the contact lines that carries nothing, from which on it is told
 
 
 def in_slices(scene: Scene, pair: GearPair) -> bool:
@@ -133,7 +131,7 @@ def flank_contact_of(
         travel_mm=column(mesh.cycle.travels * path.base_pitch),
         lines_mm=column(mesh.lines),
         loads=loads,
-        validity=(*beyond, *yielding(most), *_idle(mesh, [load.open_share for load in loads])),
+        validity=(*beyond, *yielding(most)),
     )
 
 
@@ -146,16 +144,6 @@ def _lengths(pair: GearPair, ratio: float, mean: float) -> tuple[float, float, f
         return whole * float(pair.face_width), mean, most * float(pair.face_width)
     low, high = length_range(ratio, overlap)
     return low * mean, mean, high * mean
-
-
-def _idle(mesh: FlankMesh, shares: Sequence[float]) -> Iterator[str]:
-    """Yield at which loads part of the contact lines carries nothing."""
-    for load, share in zip(mesh.loads, shares, strict=True):
-        if load and share > IDLE:
-            yield (
-                f"At {100.0 * load:g} % of the duty's torque {100.0 * share:.2g} % of the length "
-                "of the contact lines carries nothing."
-            )
 
 
 def relieved_flank(

@@ -83,7 +83,7 @@ def binding_limit(result: Result, measures: Measures = METRIC) -> str:
     """Largest load of one tooth and evenness of the pair, in words."""
     if relief := relief_of(result):
         return pair_relief.relief_words(relief, measures)
-    if (made := flank.flank_of(result)) and result.value is None:
+    if (made := flank.flank_of(result)) and (result.value is None or any(made.relief_mm)):
         return _with_rating(result, flank.binding_words(made, measures), measures)
     if (pair_contact := contact_of(result)) is None or result.value is not None:
         return ""

@@ -18,6 +18,7 @@ from gearopt.report.section import Cell, Section, Table, Tile, cell, side_by_sid
 from gearopt.report.words import amount, micrometres, number, share
 
 STIFFNESS = "N_per_mm_um"  # of MPa
+IDLE = 0.005  # part of the contact lines that carries nothing, from which on it is told
 EVEN = 5e-4  # of a face load factor: nearer to 1 it is even
 HEIGHT = 380  # px
 DASHES = ("solid", "dash", "dashdot", "longdash")  # of one load after the other
@@ -56,6 +57,7 @@ def tiles(flank: FlankContact, measures: Measures) -> list[Tile]:
     load = of_duty(flank)
     torque = f"at {share(load.load)} % of the duty's torque"
     iso = amount(flank.iso_mesh_stiffness_MPa, STIFFNESS, measures)
+    plain = load.plain_peak_to_peak_mm
     return [
         Tile(
             "largest line load",
@@ -63,8 +65,8 @@ def tiles(flank: FlankContact, measures: Measures) -> list[Tile]:
             f"face load factor {number(load.face_load_factor)}, {torque}",
         ),
         Tile(
-            "transmission error, peak to peak",
-            amount(load.peak_to_peak_mm, "um", measures),
+            "transmission error, peak to peak" if plain is None else "peak to peak without relief",
+            amount(load.peak_to_peak_mm if plain is None else plain, "um", measures),
             torque,
         ),
         Tile(
@@ -116,6 +118,7 @@ def answers(flank: FlankContact, measures: Measures = METRIC) -> list[str]:
     return [
         _lines(flank, measures),
         _where(load, measures),
+        *_idle(flank),
         f"The transmission error varies by {', '.join(each)}, peak to peak.",
         _stiff(flank, load),
         *_relief(flank, measures),
@@ -146,6 +149,18 @@ def _where(load: FlankLoad, measures: Measures) -> str:
         f"At {100.0 * load.load:g} % of the torque the line load is largest, {line}, at s = {s} on "
         f"the path of contact and y = {y} across the face; {factor}."
     )
+
+
+def _idle(flank: FlankContact) -> list[str]:
+    """Say at which loads part of the contact lines carries nothing."""
+    some = [
+        f"{100.0 * it.open_share:.2g} % at {100.0 * it.load:g} % of the torque"
+        for it in flank.loads
+        if it.load and it.open_share > IDLE
+    ]
+    if not some:
+        return []
+    return [f"Of the length of the contact lines {', '.join(some)} carries nothing."]
 
 
 def _stiff(flank: FlankContact, load: FlankLoad) -> str:
