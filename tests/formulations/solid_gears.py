@@ -1,9 +1,9 @@
 """Finite elements of whole helical gears in space, as an oracle of load sharing by slices.
 
 The section mesh of `tooth.mesh`, extruded along the helix; trilinear hexahedra with incompatible
-modes (Wilson; Taylor), the bore held, factorised in the order of a nested dissection. A contact
-line presses in every node plane over a stretch of the flank by Hertz's distribution; what the
-stretch is wider than the contact, the half plane's logarithm adds.
+modes (Wilson; Taylor), the bore held, factorised in the order of a nested dissection. Contact lines
+press evenly on slices between node planes, as far as they reach, over a stretch of the flank by
+Hertz's distribution; what the stretch is wider than the contact, the half plane's logarithm adds.
 """
 
 from dataclasses import dataclass
@@ -13,6 +13,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.linalg import splu
 
+from gearopt.physics.contact_lines import Face
 from gearopt.physics.gears import Gear
 from gearopt.physics.geometry.fillet import half_angle
 from gearopt.physics.geometry.tooth import base_helix_angle
@@ -21,6 +22,7 @@ from gearopt.physics.tooth.mesh import Fineness, GearMesh, gear_mesh
 LEAF = 60  # nodes that are not dissected further
 PRESSED = 32  # points at which a pressure acts
 AT_ONCE = 32  # loads
+LEAST = 0.1  # of a slice: a part that is shorter carries nothing
 
 
 @dataclass(frozen=True)
@@ -38,8 +40,8 @@ class Solid:
         """Return the angle [rad], clockwise, of the section at z."""
         return self.hand * np.tan(base_helix_angle(self.gear)) * z / (0.5 * self.gear.base_diameter)
 
-    def contact(self, tooth: int, plane: int, curvature: float, wide: float) -> tuple[Any, Any]:
-        """Return nodes (n, 3 dofs) and forces (n, 3) of a unit transverse force on a flank.
+    def contact(self, tooth: int, y: float, curvature: float, wide: float) -> tuple[Any, Any]:
+        """Return nodes (n,) and forces (n, 3) of a unit transverse force on a flank at y [mm].
 
         wide: half the stretch that is pressed [mm]; 0: the point alone, to measure there.
         """
@@ -50,8 +52,7 @@ class Solid:
         at = np.interp(np.hypot(base, curvature), np.hypot(*points), lengths)
         angle = np.pi / (PRESSED + 1) * np.arange(1, PRESSED + 1)
         places = at + wide * np.cos(angle)
-        there = places <= lengths[-1]
-        shares = np.where(there, np.sin(angle) ** 2, 0.0)
+        shares = np.where(places <= lengths[-1], np.sin(angle) ** 2, 0.0)
         shares /= shares.sum()
         edge = np.clip(np.searchsorted(lengths, places) - 1, 0, len(lengths) - 2)
         t = (places - lengths[edge]) / (lengths[edge + 1] - lengths[edge])
@@ -60,35 +61,51 @@ class Solid:
         np.add.at(weights, edge + 1, shares * t)
         some = np.flatnonzero(weights)
         pitch = 2.0 * np.pi / float(self.gear.teeth)
-        turned = self.turn(self.planes[plane]) + tooth * pitch
         slope = np.arctan2(curvature, base) - half_angle(self.gear, np.hypot(base, curvature))
-        slope = slope - turned
+        slope = slope - self.turn(y) - tooth * pitch
         axial = self.hand * np.tan(base_helix_angle(self.gear))
         normal = -np.array([np.cos(slope), np.sin(slope), -axial])
-        nodes = line[some] + plane * self.mesh.points.shape[1]
-        return nodes, weights[some][:, None] * normal
+        j = int(np.clip(np.searchsorted(self.planes, y) - 1, 0, len(self.planes) - 2))
+        up = (y - self.planes[j]) / (self.planes[j + 1] - self.planes[j])
+        across = self.mesh.points.shape[1]
+        nodes = np.concatenate([line[some] + j * across, line[some] + (j + 1) * across])
+        both = np.concatenate([(1.0 - up) * weights[some], up * weights[some]])
+        return nodes, both[:, None] * normal
 
-    def compliances(self, loads: list[Any], seen: list[list[Any]], wide: float) -> list[Any]:
-        """Return, of each load (tooth, plane, curvature), how far those seen move inwards."""
+    def pressed(self, at: "Segment", wide: float) -> tuple[Any, Any]:
+        """Return nodes and forces of a unit force that is even along a segment of a line."""
+        rows = [self.contact(at.tooth, *end, wide) for end in at.gauss]
+        return np.concatenate([r[0] for r in rows]), 0.5 * np.concatenate([r[1] for r in rows])
+
+    def compliances(self, loads: Any, seen: Any, wide: float) -> list[Any]:
+        """Return, of each loaded segment, how far those seen move inwards on average."""
         count = 3 * self.mesh.points.shape[1] * len(self.planes)
         answers = []
         for first in range(0, len(loads), AT_ONCE):
             part = range(first, min(first + AT_ONCE, len(loads)))
             forces = np.zeros((count, len(part)))
             for column, k in enumerate(part):
-                nodes, force = self.contact(*loads[k], wide)
+                nodes, force = self.pressed(loads[k], wide)
                 for axis in range(3):
-                    forces[3 * nodes + axis, column] = force[:, axis]
+                    np.add.at(forces[:, column], 3 * nodes + axis, force[:, axis])
             moved = np.zeros_like(forces)
             moved[self.free] = self.factor(forces[self.free])
             for column, k in enumerate(part):
                 row = []
                 for place in seen[k]:
-                    nodes, weight = self.contact(*place, 0.0)
+                    nodes, weight = self.pressed(place, 0.0)
                     at = 3 * nodes[:, None] + np.arange(3)
                     row.append(float((moved[at, column] * weight).sum()))
                 answers.append(np.array(row))
         return answers
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A segment of a contact line on a tooth: (y, radius of curvature) [mm] at two Gauss points."""
+
+    tooth: int
+    gauss: tuple[tuple[float, float], tuple[float, float]]
 
 
 def solid(
@@ -216,88 +233,85 @@ def _dissection(points: Any, elements: Any, nodes: Any, count: int) -> Any:
 
 @dataclass(frozen=True)
 class Lines:
-    """Contact lines at a travel: pairs k, planes j and positions s [mm] of n points; C (n, n).
+    """Contact lines at a travel: pairs k, slices i and lengths [mm] of n segments; C (n, n).
 
-    compliances [mm/N] of transverse forces along the line of action, contact included.
+    lengths across the face; compliances [mm/N] of transverse forces, contact included.
     """
 
     travel: float
     pairs: Any
-    planes: Any
-    positions: Any
+    slices: Any
+    lengths: Any
     compliances: Any
 
 
 def contact_lines(
-    elastic: Any, force: float, planes: Any, travels: Any, size: float, wide: float
+    elastic: Any, face: Face, force: float, travels: Any, size: float, wide: float
 ) -> list[Lines]:
-    """Return the points in contact of both whole gears at travels of a base pitch, with C.
+    """Return the segments in contact of both whole gears at travels of a base pitch, with C.
 
     elastic: an object with pair, path, bores, moduli, poissons; force [N]: the transverse one, of
     which a pair has the whole in the law of its contact; size, wide [mm]: elements and half the
     stretch that is pressed.
     """
     pair, path = elastic.pair, elastic.path
-    slope = float(np.tan(base_helix_angle(pair.pinion)))
-    reach = 0.5 * slope * float(planes[-1] - planes[0])
+    planes = face.width * (np.arange(face.count + 1) / face.count - 0.5)
     lines = []
     for travel in travels:
-        first = path.start - reach + travel * path.base_pitch
-        count = int(np.ceil((path.end + reach - first) / path.base_pitch))
-        grid = first + np.arange(count)[:, None] * path.base_pitch + slope * planes
-        k, j = np.nonzero((grid > path.start + 1e-9) & (grid < path.end - 1e-9))
-        lines.append((travel, k, j, grid[k, j]))
-    answers = [np.zeros((len(k), len(k))) for _, k, _, _ in lines]
+        first = path.start - face.reach + travel * path.base_pitch
+        count = int(np.ceil((path.end + face.reach - first) / path.base_pitch))
+        part, at = face.parts(path, first + np.arange(count) * path.base_pitch)
+        k, i = np.nonzero(part > LEAST)
+        ahead = at[k, i] - first - k * path.base_pitch
+        y = ahead / face.slope if face.slope else face.places[i]
+        lines.append((travel, k, i, part[k, i] * face.slice_width, y, at[k, i]))
+    answers = [np.zeros((len(row[1]), len(row[1]))) for row in lines]
     for side in (0, 1):
         hand = 1.0 - 2.0 * side
         ends = np.array([path.start, path.end])
-        curved = path.radii_of_curvature(ends)[side]
-        radii = np.sort(np.hypot(0.5 * pair.gears[side].base_diameter, curved))
-        body = solid(
-            pair.gears[side],
-            elastic.bores[side],
-            hand,
-            planes,
-            (size, radii[0] - 0.5 * size, radii[1]),
-            elastic.moduli[side],
-            elastic.poissons[side],
+        radii = np.sort(
+            np.hypot(0.5 * pair.gears[side].base_diameter, path.radii_of_curvature(ends)[side])
         )
+        reach = size, radii[0] - 0.5 * size, radii[1]
+        material = elastic.moduli[side], elastic.poissons[side]
+        body = solid(pair.gears[side], elastic.bores[side], hand, planes, reach, *material)
         loads: list[Any] = []
         seen: list[Any] = []
-        for _, k, j, s in lines:
-            rho = path.radii_of_curvature(s)[side]
-            for i in range(len(k)):
-                loads.append((0, int(j[i]), float(rho[i])))
-                teeth = (hand * (k - k[i])).astype(int)
-                seen.append(
-                    [(int(a), int(b), float(c)) for a, b, c in zip(teeth, j, rho, strict=True)]
+        for _, k, _, long, y, s in lines:
+            away = 0.5 / np.sqrt(3.0) * long
+            gauss = [
+                tuple(
+                    (float(place), float(path.radii_of_curvature(at)[side]))
+                    for place, at in ((y[n] + d, s[n] + face.slope * d) for d in (-a, a))
                 )
+                for n, a in enumerate(away)
+            ]
+            for n in range(len(k)):
+                loads.append(Segment(0, gauss[n]))
+                teeth = (hand * (k - k[n])).astype(int)
+                seen.append([Segment(int(t), g) for t, g in zip(teeth, gauss, strict=True)])
         rows = body.compliances(loads, seen, wide)
-        at = 0
-        for n, (_, k, _, _) in enumerate(lines):
-            answers[n] += np.array(rows[at : at + len(k)])
-            at += len(k)
-    cosine = float(np.cos(base_helix_angle(pair.pinion)))
-    weights = plane_widths(planes)
+        first = 0
+        for n, row in enumerate(lines):
+            answers[n] += np.array(rows[first : first + len(row[1])])
+            first += len(row[1])
+    return [
+        Lines(*row[:4], 0.5 * (c + c.T) + np.diag(_local(elastic, row, force, wide)))
+        for row, c in zip(lines, answers, strict=True)
+    ]
+
+
+def _local(elastic: Any, row: Any, force: float, wide: float) -> Any:
+    """Return what the half plane adds to segments that are pressed wider than they touch."""
+    cosine = float(np.cos(base_helix_angle(elastic.pair.pinion)))
     soft = sum(
         2.0 * (1.0 - nu**2) / (np.pi * e)
         for e, nu in zip(elastic.moduli, elastic.poissons, strict=True)
     )
-    result = []
-    for (travel, k, j, s), matrix in zip(lines, answers, strict=True):
-        first, second = path.radii_of_curvature(s)
-        round_ = first * second / (first + second) / cosine  # in the normal section
-        line = force / float(pair.face_width)
-        half = np.sqrt(4.0 * line * 0.5 * soft * round_)
-        extra = soft / cosine / weights[j] * np.log(wide * cosine / half)
-        symmetric = 0.5 * (matrix + matrix.T) + np.diag(extra)
-        result.append(Lines(travel, k, j, s, symmetric))
-    return result
-
-
-def plane_widths(planes: Any) -> Any:
-    """Return the width [mm] that every node plane stands for."""
-    return np.gradient(planes) * np.where(np.isin(planes, planes[[0, -1]]), 0.5, 1.0)
+    first, second = elastic.path.radii_of_curvature(row[5])
+    round_ = first * second / (first + second) / cosine  # in the normal section
+    half = np.sqrt(2.0 * force / float(elastic.pair.face_width) * soft * round_)
+    return soft / cosine / row[3] * np.log(wide * cosine / half)
 
 
 def shared(compliances: Any, load: float) -> tuple[Any, float]:

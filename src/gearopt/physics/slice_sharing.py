@@ -3,9 +3,8 @@
 Forces F [N] on slices minimise the complementary energy 1/2 F'CF + e'F under sum F = W, F >= 0, as
 of `load_sharing`, with C = diag(c) + K^-1 + c12: c of the contacts, K the springs of each pair of
 teeth, a bed and links of neighbours (a Stieltjes matrix of three diagonals), c12 of all. C is the
-inverse of an M-matrix, so that slices which pull leave for good: the active set is found by leaving
-them out, as its approach falls (Chandrasekaran, Oper. Res. 18 (1970)). Each round solves
-(K + diag(1/c)) u = (delta - e)/c, linear in delta, by three diagonals.
+inverse of an M-matrix, so that slices which pull leave for good (docs/proofs.md, lemma 91). Each
+round solves (K + diag(1/c)) u = (delta - e)/c, linear in delta, by three diagonals.
 """
 
 from typing import Any, NamedTuple

@@ -3,13 +3,15 @@
 import numpy as np
 import pytest
 from flank_pairs import flank, gears, solid
-from solid_gears import contact_lines, plane_widths, shared
+from solid_gears import contact_lines, shared
 
+from gearopt.physics.contact_lines import Face
 from gearopt.physics.tooth import mesh as section
+from gearopt.physics.tooth import slices
 
 pytest.importorskip("skfem")
 STEPS = 6
-PLANES = {"12 degrees": 15, "17 degrees": 21, "25 degrees": 19}
+SLICES = {"12 degrees": 15, "17 degrees": 21, "25 degrees": 19}
 # stiffness and peak to peak relative to the elements, load along the lines rms over its mean
 MEASURED = {
     "12 degrees": (0.0, 0.0, 0.0),
@@ -25,42 +27,49 @@ def coarse(monkeypatch):
         monkeypatch.setattr(section, name, value)
 
 
-def compared(name, slices, coupling):
-    """Errors of stiffness, peak to peak and load, of slices against finite elements."""
+def elements(name):
+    """Contact lines by finite elements at some travels, loads shared: (line, forces, approach)."""
     pair, _, force = gears(name)
-    width, module = float(pair.face_width), float(pair.normal_module)
-    planes = np.linspace(-0.5 * width, 0.5 * width, PLANES[name])
+    module, face = float(pair.normal_module), Face.of(pair, SLICES[name])
     travels = np.arange(STEPS) / STEPS
-    lines = contact_lines(solid(name), force, planes, travels, 0.08 * module, 0.11 * module)
-    mesh = flank(name, slices, coupling, steps=STEPS)
-    widths, errors, off, mean = plane_widths(planes), [], [], []
-    part, _ = mesh.face.parts(mesh.sliced.path, mesh.cycle.positions)
-    for line in lines:
+    lines = contact_lines(solid(name), face, force, travels, 0.08 * module, 0.11 * module)
+    return [(line, *shared(line.compliances, force)) for line in lines]
+
+
+def errors(name, known, coupling):
+    """Errors of stiffness, peak to peak and load along the lines, of slices."""
+    mesh = flank(name, SLICES[name], coupling, steps=STEPS)
+    approaches, off, mean = [], [], []
+    for line, forces, approach in known:
         at = int(np.flatnonzero(np.isclose(mesh.cycle.travels, line.travel, atol=1e-9))[0])
-        forces, approach = shared(line.compliances, force)
-        errors.append((approach, mesh.sharing.approach[0, at]))
-        for k in np.unique(line.pairs):
-            some = line.pairs == k
-            j = line.planes[some]
-            there = part[at, k] > 0.3
-            own = mesh.sharing.forces[0, at, k][there] / part[at, k][there] / mesh.face.slice_width
-            model = np.interp(planes[j], mesh.face.places[there], own)
-            off += list(model - forces[some] / widths[j])
-            mean += list(forces[some] / widths[j])
-    known, found = np.array(errors).T
-    stiff = float((1.0 / found).mean() / (1.0 / known).mean() - 1.0)
+        approaches.append((approach, mesh.sharing.approach[0, at]))
+        own = mesh.sharing.forces[0, at][line.pairs, line.slices]
+        off.append((own - forces) / np.sqrt(line.lengths))
+        mean.append(forces)
+    elements, found = np.array(approaches).T
+    stiff = (1.0 / found).mean() / (1.0 / elements).mean() - 1.0
+    whole = np.concatenate([line.lengths for line, _, _ in known]).sum()
+    rms = np.sqrt(np.square(np.concatenate(off)).sum() / whole)
     return (
-        stiff,
-        np.ptp(found) / np.ptp(known) - 1.0,
-        np.sqrt(np.mean(np.square(off))) / np.mean(mean),
+        float(stiff),
+        float(np.ptp(found) / np.ptp(elements) - 1.0),
+        float(rms / (np.concatenate(mean).sum() / whole)),
     )
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", list(PLANES))
-def test_slices_agree_with_finite_elements_in_space(coarse, name):
-    """Mean stiffness within 8 %, peak to peak 15 %, load along the lines 10 % rms; as printed."""
-    found = compared(name, 41, "finite elements")
-    print(name, found)
+@pytest.mark.parametrize("name", list(SLICES))
+def test_slices_agree_with_finite_elements_in_space(coarse, monkeypatch, name):
+    """Mean stiffness within 8 %, peak to peak 15 %, load along the lines 10 % rms; as printed.
+
+    Slices that do not hold each other are farther off: coupling across the face is seen.
+    """
+    known = elements(name)
+    found = errors(name, known, "finite elements")
+    ring = errors(name, known, "ring torsion")
+    monkeypatch.setattr(slices, "HOLD", 0.0)
+    apart = errors(name, known, "finite elements")
+    print(name, found, ring, apart)
     assert abs(found[0]) < 0.08 and abs(found[1]) < 0.15 and found[2] < 0.10
-    assert found == pytest.approx(MEASURED[name], abs=0.005)
+    assert apart[2] > 1.2 * found[2]
+    assert [*found, *ring, *apart] == pytest.approx(MEASURED[name], abs=0.005)

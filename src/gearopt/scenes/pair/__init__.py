@@ -267,7 +267,7 @@ def _to_size(scene: Scene) -> Scene:
 
 
 ABOUT = {  # files in examples, that of the kind first
-    "pair": "a spur gear pair, sized or given, and how its teeth share the load",
+    "pair": "a gear pair, sized or given, and how its teeth share the load",
     "sized-pair": "a spur pair from duty and steel alone, and how its teeth share the load",
 }
 KIND = Kind(

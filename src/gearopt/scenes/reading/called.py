@@ -152,6 +152,14 @@ PAIR = {
     "loads, in [sharing]": "sharing.load",
     "amount, in [relief]": "relief.tip_relief relief.root_relief relief_amount",
     "coupling, in [sharing]": "c12 sharing.c12",
+    "crowning, in [flank]": "crowning lead_crowning c_beta flank.c_b breitenballigkeit "
+    "face_crowning",
+    "helix_correction, in [flank]": "helix_modification helix_angle_modification "
+    "helix_slope_modification lead_correction lead_modification c_hbeta c_h_beta "
+    "flankenlinienwinkelkorrektur",
+    "misalignment, in [flank]": "f_beta_y f_betay f_hbeta f_h_beta flank.slope shaft_deflection "
+    "deflection flankenlinienabweichung",
+    "slices, in [flank]": "number_of_slices slice_count n_slices scheiben",
     "level, in [sharing]": "model sharing.model stiffness",
     "positions, in [sharing]": "steps sharing.steps phases",
 }
@@ -243,7 +251,7 @@ KINDS = {
 }
 CALLED: dict[str, dict[str, str]] = {
     "drive": DRIVE,
-    "pair": DRIVE | PAIR,
+    "pair": PAIR | DRIVE,  # its own names first
     "servo": SERVO,
     "compound": COMPOUND,
     "epicyclic": EPICYCLIC,

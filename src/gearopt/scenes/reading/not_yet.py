@@ -198,13 +198,14 @@ NEAREST["pair"] = NEAREST["drive"] | {
     "layout place keep_out process_one process_two": 'Nearest: kind = "drive" with one [[stage]], '
     "which is laid out, and sized by the rules of processes; a pair's contact is computed here",
     "stages number_of_stages num_stages stage_count": 'A pair is one. Nearest: kind = "drive"',
-    SHAPE: "A pair has external spur gears, as the models of its contact are plane",
+    SHAPE: "A pair has external gears on parallel shafts: helix_angle of [gears] says whether "
+    "spur or helical",
     **dict.fromkeys(
         (BEARINGS, SPANS, "shaft_diameter shaft_diameters wellendurchmesser"),
         "Shafts and bearings are rigid here. Nearest: bore of a gear, where it is held",
     ),
-    "crowning lead_crowning helix_modification": "Plane models have no crowning: nothing varies "
-    "across the face width",
+    "end_relief face_relief endrelief endruecknahme bias twist verschraenkung": "Along the face "
+    "flanks are crowned, straight or misaligned. Nearest: crowning of [flank]",
 }
 
 for _kind in NEAREST:
