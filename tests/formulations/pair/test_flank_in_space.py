@@ -10,13 +10,14 @@ from gearopt.physics.tooth import mesh as section
 from gearopt.physics.tooth import slices
 
 pytest.importorskip("skfem")
-STEPS = 6
+STEPS = 8
 SLICES = {"12 degrees": 15, "17 degrees": 21, "25 degrees": 19}
-# stiffness and peak to peak relative to the elements, load along the lines rms over its mean
+# errors of stiffness, peak to peak and load: coupling by finite elements, by ring torsion, and by
+# finite elements where slices do not hold each other
 MEASURED = {
-    "12 degrees": (0.0, 0.0, 0.0),
-    "17 degrees": (0.0, 0.0, 0.0),
-    "25 degrees": (0.0, 0.0, 0.0),
+    "12 degrees": (0.012, 0.104, 0.076, 0.099, 0.370, 0.070, -0.003, 0.235, 0.144),
+    "17 degrees": (-0.038, 0.078, 0.085, 0.031, 0.351, 0.078, -0.059, 0.116, 0.154),
+    "25 degrees": (0.015, -0.032, 0.091, 0.073, 0.252, 0.088, -0.019, -0.037, 0.174),
 }
 
 
@@ -69,7 +70,6 @@ def test_slices_agree_with_finite_elements_in_space(coarse, monkeypatch, name):
     ring = errors(name, known, "ring torsion")
     monkeypatch.setattr(slices, "HOLD", 0.0)
     apart = errors(name, known, "finite elements")
-    print(name, found, ring, apart)
     assert abs(found[0]) < 0.08 and abs(found[1]) < 0.15 and found[2] < 0.10
-    assert apart[2] > 1.2 * found[2]
-    assert [*found, *ring, *apart] == pytest.approx(MEASURED[name], abs=0.005)
+    assert apart[2] > 1.5 * found[2]
+    assert [*found, *ring, *apart] == pytest.approx(MEASURED[name], abs=0.002)
