@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from dense_slices import matrix
 
 from gearopt.physics.load_sharing import share
-from gearopt.physics.slice_sharing import Springs, matrix, share_slices
+from gearopt.physics.slice_sharing import Springs, share_slices
 
 
 def random_springs(rng):

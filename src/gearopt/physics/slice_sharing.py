@@ -95,15 +95,3 @@ def _solved(diagonal: Any, links: Any, first: Any, second: Any) -> tuple[Any, An
         a[k] = (a[k] + held[k] * a[k + 1]) / own[k]
         b[k] = (b[k] + held[k] * b[k + 1]) / own[k]
     return np.moveaxis(a, 0, -1), np.moveaxis(b, 0, -1)
-
-
-def matrix(springs: Springs) -> Array:
-    """Return C (n m, n m) [mm/N] of one position, pairs of teeth one after the other."""
-    count, slices = springs.contacts.shape
-    whole = np.diag(springs.contacts.ravel()) + springs.coupling
-    for k in range(count):
-        bed = springs.bed[k] + _around(springs.links[k])
-        rows = np.diag(bed) - np.diag(springs.links[k], 1) - np.diag(springs.links[k], -1)
-        some = slice(k * slices, (k + 1) * slices)
-        whole[some, some] += np.linalg.inv(rows)
-    return np.asarray(whole)

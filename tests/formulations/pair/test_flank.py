@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from dense_slices import matrix
 from flank_pairs import flank, gears
 
 from gearopt.formulations.pair.contact import PairMesh, at_loads
@@ -12,7 +13,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.solve import solve
 from gearopt.optimise.terms import Terms, Var
 from gearopt.physics.iso6336.stiffness import mesh_stiffness, single_stiffness
-from gearopt.physics.slice_sharing import Springs, matrix
+from gearopt.physics.slice_sharing import Springs
 from gearopt.physics.tooth.elastic import ElasticPair
 from gearopt.physics.tooth.ladder import USUAL, ring_torsion
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from gearopt.frozen import dataclass
 from gearopt.physics.gears import Gear, GearPair
-from gearopt.physics.geometry.contact import ContactPath, usable_path
+from gearopt.physics.geometry.contact import ContactPath
 from gearopt.physics.geometry.tooth import base_helix_angle, virtual_teeth
 from gearopt.physics.tooth.elastic import POISSON, STEEL, ElasticPair
 from gearopt.physics.tooth.hertz import contact_compliance
@@ -131,14 +131,3 @@ def _virtual(gear: Gear) -> Gear:
     teeth = float(virtual_teeth(gear))
     diameter = float(gear.normal_module) * teeth
     return replace(gear, teeth=teeth, reference_diameter=diameter, helix_angle=0.0)
-
-
-def sliced(
-    pair: GearPair,
-    normal: ElasticPair,
-    compliance: Callable[[Any], Any],
-    force: float,
-    coupling: float,
-) -> Sliced:
-    """Return a pair in slices on its usable path; see `Sliced`."""
-    return Sliced(pair, usable_path(pair), normal, compliance, force, coupling)

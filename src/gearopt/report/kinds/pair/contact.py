@@ -2,11 +2,13 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from gearopt.formulations.drive.design import StageDesign, drive_design
 from gearopt.formulations.pair.design import ContactLoad, PairContact, PairRelief
+from gearopt.formulations.pair.flank_design import FlankContact, FlankLoad
 from gearopt.optimise.result import Result
 from gearopt.physics.blanks import Body
 from gearopt.physics.gears import GearPair
@@ -197,6 +199,16 @@ def loads(contact: PairContact, measures: Measures) -> Table:
     """Forces, stresses and errors at every load, beside the stiffness by ISO 6336-1."""
     each = contact.loads
     shares = [Cell(100.0 * load.largest_share, share(load.largest_share)) for load in each]
+    forces = [["the same, % of the normal force", *shares]]
+    caption = "Force, contact stress, transmission error and stiffness at each load."
+    return load_table(contact, measures, forces, caption)
+
+
+def load_table(
+    contact: PairContact | FlankContact, measures: Measures, forces: list[list[Any]], caption: str
+) -> Table:
+    """Everything at every load, beside the stiffness by ISO 6336-1; forces: rows after them."""
+    each: Sequence[ContactLoad | FlankLoad] = contact.loads
     micro, stiff = measures.unit("um"), measures.unit(STIFFNESS)
     waves = zip(*(load.harmonics_mm for load in each), strict=True)
     unloaded = Cell("", "–")  # there is no mesh stiffness
@@ -206,7 +218,7 @@ def loads(contact: PairContact, measures: Measures) -> Table:
     }
     rows = [
         *side_by_side(each, measures, "forces"),
-        ["the same, % of the normal force", *shares],
+        *forces,
         *side_by_side(each, measures, "motion"),
         *(
             [f"harmonic {k} [{micro}]", *(cell(v, "um", measures) for v in wave)]
@@ -222,7 +234,6 @@ def loads(contact: PairContact, measures: Measures) -> Table:
         ),
     ]
     names = [f"{100.0 * load.load:g} %" for load in each]
-    caption = "Force, contact stress, transmission error and stiffness at each load."
     return Table("loads", ["", *names], rows, caption, across=True)
 
 

@@ -10,18 +10,16 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.physics.gears import MEMBERS
 from gearopt.report.drawing.sheet import series
-from gearopt.report.kinds.pair.contact import columns
+from gearopt.report.kinds.pair.contact import DASHES, STIFFNESS, columns, load_table
 from gearopt.report.measures import METRIC, Measures, rounded
 from gearopt.report.plots import Figure, axis, heat, layout
 from gearopt.report.plots import lines as curve
-from gearopt.report.section import Cell, Section, Table, Tile, cell, side_by_side
+from gearopt.report.section import Section, Table, Tile
 from gearopt.report.words import amount, micrometres, number, share
 
-STIFFNESS = "N_per_mm_um"  # of MPa
 IDLE = 0.005  # part of the contact lines that carries nothing, from which on it is told
 EVEN = 5e-4  # of a face load factor: nearer to 1 it is even
 HEIGHT = 380  # px
-DASHES = ("solid", "dash", "dashdot", "longdash")  # of one load after the other
 # errors on three pairs against finite elements in space: docs/helical_pairs.md
 MEASURED = (
     "Accuracy: on three helical pairs of steel gears, with helix angles from 12 to 25 degrees, and "
@@ -32,6 +30,10 @@ MEASURED = (
 SOFTER = (
     'With coupling = "ring torsion", as here, the stiffness was 3 to 10 % and the peak-to-peak '
     'transmission error 25 to 37 % too large: write coupling = "finite elements" in [sharing].'
+)
+CAPTION = (
+    "Line load, contact stress, transmission error and stiffness at each load; s from the pitch "
+    "point, y from the middle of the face towards the end where contact begins."
 )
 UNMEASURED = (
     "How far this coupling is off was not measured on helical pairs: with "
@@ -95,7 +97,7 @@ def section(result: Result, measures: Measures = METRIC) -> Section | None:
     if (flank := flank_of(result)) is None:
         return None
     words = list(map(measures.words, answers(flank, measures)))
-    tables = [_loads(flank, measures), *_tables(flank, measures)]
+    tables = [load_table(flank, measures, [], CAPTION), *_tables(flank, measures)]
     return Section(
         "Contact over the flank",
         words=words,
@@ -300,40 +302,6 @@ def _curves(
     )
     plot["margin"] |= {"t": 44 if several else 24}
     return Figure(traces, plot, caption)
-
-
-def _loads(flank: FlankContact, measures: Measures) -> Table:
-    """Line loads, stresses, errors and stiffness at every load, beside ISO 6336-1."""
-    each = flank.loads
-    micro, stiff = measures.unit("um"), measures.unit(STIFFNESS)
-    waves = zip(*(load.harmonics_mm for load in each), strict=True)
-    unloaded = Cell("", "–")  # there is no mesh stiffness
-    by_iso = {
-        "c_γα of ISO 6336-1": flank.iso_mesh_stiffness_MPa,
-        "c' of ISO 6336-1, of one pair": flank.iso_single_stiffness_MPa,
-    }
-    rows = [
-        *side_by_side(each, measures, "forces"),
-        *side_by_side(each, measures, "motion"),
-        *(
-            [f"harmonic {k} [{micro}]", *(cell(v, "um", measures) for v in wave)]
-            for k, wave in enumerate(waves, 1)
-        ),
-        *(
-            [head, *(c if o.normal_force_N else unloaded for c, o in zip(cells, each, strict=True))]
-            for head, *cells in side_by_side(each, measures, "stiffness")
-        ),
-        *(
-            [f"{name} [{stiff}]", *[cell(value, STIFFNESS, measures)] * len(each)]
-            for name, value in by_iso.items()
-        ),
-    ]
-    names = [f"{100.0 * load.load:g} %" for load in each]
-    caption = (
-        "Line load, contact stress, transmission error and stiffness at each load; s from the "
-        "pitch point, y from the middle of the face towards the end where contact begins."
-    )
-    return Table("loads", ["", *names], rows, caption, across=True)
 
 
 def _tables(flank: FlankContact, measures: Measures) -> list[Table]:
