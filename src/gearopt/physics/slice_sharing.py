@@ -83,15 +83,15 @@ def _around(links: Any) -> Any:
 
 def _solved(diagonal: Any, links: Any, first: Any, second: Any) -> tuple[Any, Any]:
     """Return the solutions (..., m) of two right sides; off the diagonal stand minus the links."""
-    own, held, a, b = (np.moveaxis(x, -1, 0).copy() for x in (diagonal, links, first, second))
-    for k in range(1, len(own)):
-        factor = held[k - 1] / own[k - 1]
-        own[k] -= factor * held[k - 1]
+    pivots, held, a, b = (np.moveaxis(x, -1, 0).copy() for x in (diagonal, links, first, second))
+    for k in range(1, len(pivots)):
+        factor = held[k - 1] / pivots[k - 1]
+        pivots[k] -= factor * held[k - 1]
         a[k] += factor * a[k - 1]
         b[k] += factor * b[k - 1]
-    a[-1] /= own[-1]
-    b[-1] /= own[-1]
-    for k in range(len(own) - 2, -1, -1):
-        a[k] = (a[k] + held[k] * a[k + 1]) / own[k]
-        b[k] = (b[k] + held[k] * b[k + 1]) / own[k]
+    a[-1] /= pivots[-1]
+    b[-1] /= pivots[-1]
+    for k in range(len(pivots) - 2, -1, -1):
+        a[k] = (a[k] + held[k] * a[k + 1]) / pivots[k]
+        b[k] = (b[k] + held[k] * b[k + 1]) / pivots[k]
     return np.moveaxis(a, 0, -1), np.moveaxis(b, 0, -1)

@@ -228,6 +228,15 @@ def test_teeth_of_a_pair_keep_their_relief_and_no_others_are_taken(solved, tmp_p
             gearopt.solve(file)
 
 
+def test_the_teeth_of_a_pair_in_slices_are_refused(solved, tmp_path):
+    kept, file = tmp_path / "pair.json", tmp_path / "teeth.toml"
+    kept.write_text(solved("helical_pair").to_json(), encoding="utf-8")
+    text = (PROBLEMS / "teeth_as_springs.toml").read_text(encoding="utf-8")
+    file.write_text(text.replace("reference_pair.toml", "pair.json"), encoding="utf-8")
+    with pytest.raises(SceneError, match=r"by slices of the face.*without a table \[flank\]"):
+        gearopt.solve(file)
+
+
 def test_the_stiffness_of_a_pair_is_load_over_transmission_error(solved):
     from gearopt.formulations.pair.design import PairContact
     from gearopt.optimise.typed import typed

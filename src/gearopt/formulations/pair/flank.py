@@ -74,7 +74,7 @@ class FlankMesh:
         return cls(sliced, face, cycle, loads, modifications, reliefs)
 
     @cached_property
-    def _parts(self) -> tuple[Array, Array]:
+    def parts(self) -> tuple[Array, Array]:
         """Parts of slices in contact (p, n, m), and positions [mm] of their middles."""
         part, at = self.face.parts(self.sliced.path, self.cycle.positions)
         return np.where(part > TOUCHING, part, 0.0), at
@@ -82,12 +82,12 @@ class FlankMesh:
     @cached_property
     def compliances(self) -> Slices:
         """Compliances of the slices (p, n, m)."""
-        return self.sliced.compliances(self._parts[1])
+        return self.sliced.compliances(self.parts[1])
 
     @cached_property
     def springs(self) -> Springs:
         """Springs of all slices (p, n, m)."""
-        part, wide = self._parts[0], self.face.slice_width
+        part, wide = self.parts[0], self.face.slice_width
         bed, links = self.compliances.springs(wide, self.face.slope)
         length = np.where(part > 0.0, part, 1.0) * wide
         return Springs(self.compliances.contact / length, bed, links, self.sliced.coupling)
@@ -97,7 +97,7 @@ class FlankMesh:
 
         Infinite where none is; reliefs of pinion and wheel, of arrays (N,) for N designs.
         """
-        part, at = self._parts
+        part, at = self.parts
         path, flat = self.sliced.path, at.reshape(len(at), -1)
         ends = path.end - flat, flat - path.start
         removed = [r.removed(np.maximum(x, 0.0)) for r, x in zip(reliefs, ends, strict=True)]
@@ -113,7 +113,7 @@ class FlankMesh:
     @cached_property
     def lines(self) -> Array:
         """Length of all contact lines together [mm] at every travel (p,)."""
-        part, _ = self._parts
+        part, _ = self.parts
         return np.asarray(part.sum(axis=(-2, -1)) * self.face.slice_width / self.sliced.cosine)
 
     @cached_property
@@ -123,7 +123,7 @@ class FlankMesh:
         The load of the part of a slice at the end of a line depends on how slices are cut, and the
         springs of a line as short as a tooth is high are not those of the models.
         """
-        part, _ = self._parts
+        part, _ = self.parts
         long = part.sum(axis=-1, keepdims=True) * self.face.slice_width / self.sliced.cosine
         least = min(SHORT * float(self.sliced.pair.normal_module), 0.5 * float(long.max()))
         return (part >= 1.0 - MISSING) & (long >= least)
@@ -133,7 +133,7 @@ class FlankMesh:
 
         0 where they are not `told`.
         """
-        part, _ = self._parts
+        part, _ = self.parts
         length = np.where(part > 0.0, part, 1.0) * self.face.slice_width
         return np.where(self.told, self.sharing.forces[k] / length, 0.0)
 
@@ -144,7 +144,7 @@ class FlankMesh:
         is F_bt/b, and the radii of the normal section are rho_t/cos(beta_b). Source: Hertz's
         cylinders; ISO 21771:2007, radii of curvature in the normal section.
         """
-        _, at = self._parts
+        _, at = self.parts
         elastic = self.sliced.normal
         (e1, e2), (nu1, nu2) = elastic.moduli, elastic.poissons
         first, second = self.sliced.path.radii_of_curvature(at)
@@ -162,7 +162,7 @@ class FlankMesh:
 
         Between the positions at which a slice is met by lines; at a jump, the mean.
         """
-        _, at = self._parts
+        _, at = self.parts
         rows = []
         for j in range(self.face.count):
             there = self.told[..., j]
@@ -213,7 +213,7 @@ def _loaded(mesh: FlankMesh, k: int) -> FlankLoad:
 def _place(mesh: FlankMesh, values: Array) -> tuple[float, float]:
     """Return s and y [mm] where a value (p, n, m) is largest."""
     at = np.unravel_index(int(values.argmax()), values.shape)
-    return float(mesh._parts[1][at]), float(mesh.face.places[at[2]])
+    return float(mesh.parts[1][at]), float(mesh.face.places[at[2]])
 
 
 def _face_load_factor(mesh: FlankMesh, k: int) -> float:
@@ -225,7 +225,7 @@ def _face_load_factor(mesh: FlankMesh, k: int) -> float:
 
 def _open_share(mesh: FlankMesh, k: int) -> float:
     """Part of the length of the contact lines that carries nothing, averaged over a base pitch."""
-    part, _ = mesh._parts
+    part, _ = mesh.parts
     idle = np.where(mesh.sharing.forces[k] > 0.0, 0.0, part).sum(axis=(1, 2))
     whole = part.sum(axis=(1, 2))
     travels = mesh.cycle.travels

@@ -56,8 +56,8 @@ class Sliced:
         """Return positions [mm] on the path of the virtual pair; ends of the paths go together."""
         if self.cosine == 1.0:
             return positions
-        own, other = self.path, self.normal.path
-        share = (np.asarray(positions) - own.start) / own.length
+        other = self.normal.path
+        share = (np.asarray(positions) - self.path.start) / self.path.length
         return np.clip(other.start + share * other.length, other.start, other.end)
 
     def compliances(self, positions: Any) -> "Slices":
@@ -119,8 +119,8 @@ def normal_section(
     plain = 0.5 * (first.reference_diameter + second.reference_diameter)
     distance = float(plain * np.cos(first.rack.pressure_angle) / np.cos(working))
     grown = [
-        float(bore * own.root_diameter / gear.root_diameter)
-        for bore, own, gear in zip(bores, (first, second), pair.gears, strict=True)
+        float(bore * virtual.root_diameter / gear.root_diameter)
+        for bore, virtual, gear in zip(bores, (first, second), pair.gears, strict=True)
     ]
     virtual = GearPair(first, second, distance)
     return ElasticPair(virtual, (grown[0], grown[1]), moduli, poissons, plane)

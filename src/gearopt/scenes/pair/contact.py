@@ -84,9 +84,9 @@ def mesh_of(
 ) -> PairMesh:
     """Return a spur pair of a file in mesh at its loads; see `teeth_of`."""
     try:
-        made = teeth_of(scene, pair, materials, seconds)
+        teeth = teeth_of(scene, pair, materials, seconds)
         torque, steps = scene.duty.input_torque, scene.sharing.positions
-        mesh = PairMesh.of(made.elastic, made.level, torque, made.coupling, steps, made.loads)
+        mesh = PairMesh.of(teeth.elastic, teeth.level, torque, teeth.coupling, steps, teeth.loads)
     except ImportError as reason:  # of finite elements, an extra
         raise SolveError(str(reason)) from None
     _check_coupling(mesh)

@@ -56,18 +56,18 @@ def flank_mesh_of(
     torque = scene.duty.input_torque
     force = float(torque / (0.5 * pair.pinion.base_diameter))
     try:
-        made = teeth_of(scene, pair, materials, seconds)
-        compliance = compliance_of(made.elastic, made.level, force)
+        teeth = teeth_of(scene, pair, materials, seconds)
+        compliance = compliance_of(teeth.elastic, teeth.level, force)
         given = isinstance(scene.sharing.coupling, Quantity)
         inclined = 1.0 if given else math.cos(base_helix_angle(pair.pinion))
-        coupling = made.coupling / inclined
-        sliced = Sliced(pair, path, made.elastic, compliance, force, coupling)
+        coupling = teeth.coupling / inclined
+        sliced = Sliced(pair, path, teeth.elastic, compliance, force, coupling)
         modifications = Modifications(*(table.millimetres(name) for name in ALONG))
         mesh = FlankMesh.of(
             sliced,
             table.slices,
             scene.sharing.positions,
-            made.loads,
+            teeth.loads,
             modifications,
         )
         least = float(mesh.compliances.structure.min())
@@ -75,11 +75,11 @@ def flank_mesh_of(
         raise SolveError(str(reason)) from None
     if least <= 0.0:
         raise SolveError(
-            f'[sharing] level = "{made.level}" makes teeth stiffer than their contact and coupling '
-            f'alone, so that slices have nothing to hold each other by: write level = "{USUAL}", '
-            'or coupling = "none"'
+            f'[sharing] level = "{teeth.level}" makes teeth stiffer than their contact and '
+            "coupling alone, so that slices have nothing to hold each other by: write level = "
+            f'"{USUAL}", or coupling = "none"'
         )
-    return mesh, made.level
+    return mesh, teeth.level
 
 
 def flank_contact_of(
@@ -97,8 +97,8 @@ def flank_contact_of(
     held = [float(relief.amount) for relief in mesh.reliefs]
     long = [float(relief.length) if relief.amount else 0.0 for relief in mesh.reliefs]
     bores = [
-        float(bore * gear.root_diameter / own.root_diameter)
-        for bore, own, gear in zip(elastic.bores, elastic.pair.gears, pair.gears, strict=True)
+        float(bore * gear.root_diameter / virtual.root_diameter)
+        for bore, virtual, gear in zip(elastic.bores, elastic.pair.gears, pair.gears, strict=True)
     ]
     return FlankContact(
         level=level,
@@ -150,9 +150,9 @@ def relieved_flank(
     scene: Scene, mesh: FlankMesh, ask: Ask
 ) -> tuple[Result, tuple[Relief, Relief] | None]:
     """Return the result of the search for the tip relief of a pair in slices, and the reliefs."""
-    problem, ranges = flank_problem(scene, mesh)
+    posed, ranges = flank_problem(scene, mesh)
     assert scene.relief
-    return searched(scene.relief, problem, ranges, ask, IN_SLICES)
+    return searched(scene.relief, posed, ranges, ask, IN_SLICES)
 
 
 def flank_problem(scene: Scene, mesh: FlankMesh) -> tuple[Problem, Ranges]:

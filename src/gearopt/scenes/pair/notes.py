@@ -11,20 +11,20 @@ from gearopt.scenes.pair.contact import UNBORED, line_load
 from gearopt.scenes.pair.scene import Scene
 
 
-def flank_assumptions(scene: Scene, made: FlankContact, pair: GearPair) -> list[str]:
+def flank_assumptions(scene: Scene, flank: FlankContact, pair: GearPair) -> list[str]:
     """Assumptions of contact by slices, in sentences."""
-    coupled = 1e6 * made.coupling_mm_per_N
+    coupled = 1e6 * flank.coupling_mm_per_N
     return [
         "Contact: involute helicoids with the modifications of the file and no other errors, no "
         "friction, no dynamics; shafts and bearings give way by the misalignment of the file "
         "alone, and gears are held at their bores. Loads are those of the duty without "
         "application and dynamic factors. Teeth are taken to meet in the plane of action; "
         "deflected ones without relief meet before it, at the edge of a tip.",
-        f"{made.slices} slices across the face, spur gears of the normal section by {made.level}, "
-        f"in plane {made.plane}; the contact compliance is that at the torque of the duty, at "
-        "every load. Slices of a tooth hold each other as strips of a plate do.",
-        f"All slices are coupled by {coupled:.3g} µm/kN ({made.coupling}).",
-        *_held(scene, made),
+        f"{flank.slices} slices across the face, spur gears of the normal section by "
+        f"{flank.level}, in plane {flank.plane}; the contact compliance is that at the torque of "
+        "the duty, at every load. Slices of a tooth hold each other as strips of a plate do.",
+        f"All slices are coupled by {coupled:.3g} µm/kN ({flank.coupling}).",
+        *_held(scene, flank),
         *_light(line_load(scene, pair)),
     ]
 

@@ -42,8 +42,8 @@ def contact_of(result: Result) -> PairContact | None:
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
     """Load on a tooth, transmission error and stiffness as key figures."""
-    if made := flank.flank_of(result):
-        return [*flank.tiles(made, measures), *rating_words.tiles(result, measures)]
+    if flanks := flank.flank_of(result):
+        return [*flank.tiles(flanks, measures), *rating_words.tiles(result, measures)]
     if (pair_contact := contact_of(result)) is None:
         return []
     relief = relief_of(result)
@@ -83,8 +83,9 @@ def binding_limit(result: Result, measures: Measures = METRIC) -> str:
     """Largest load of one tooth and evenness of the pair, in words."""
     if relief := relief_of(result):
         return pair_relief.relief_words(relief, measures)
-    if (made := flank.flank_of(result)) and (result.value is None or any(made.relief_mm)):
-        return _with_rating(result, flank.binding_words(made, measures), measures)
+    flanks = flank.flank_of(result)
+    if flanks and (result.value is None or any(flanks.relief_mm)):
+        return _with_rating(result, flank.binding_words(flanks, measures), measures)
     if (pair_contact := contact_of(result)) is None or result.value is not None:
         return ""
     load = of_duty(pair_contact)

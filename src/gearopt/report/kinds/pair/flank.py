@@ -44,8 +44,8 @@ UNMEASURED = (
 def flank_of(result: Result) -> FlankContact | None:
     """The contact over the flank that a design holds; None without one."""
     held = result.design.get("flank")
-    made: FlankContact | None = typed(FlankContact, held, "flank") if held else None
-    return made
+    flank: FlankContact | None = typed(FlankContact, held, "flank") if held else None
+    return flank
 
 
 def of_duty(flank: FlankContact) -> FlankLoad:
