@@ -5,17 +5,20 @@ import pytest
 from dense_slices import matrix
 from flank_pairs import flank, gears
 
-from gearopt.formulations.pair.contact import PairMesh, at_loads
-from gearopt.formulations.pair.flank import flank_loads
+from gearopt.formulations.pair.contact import PairMesh, at_loads, compliance_of
+from gearopt.formulations.pair.flank import FlankMesh, Modifications, flank_loads
 from gearopt.formulations.pair.flank_relief import peak_to_peak
 from gearopt.formulations.pair.relief.meshing import NO_RELIEF, Relief
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.solve import solve
 from gearopt.optimise.terms import Terms, Var
+from gearopt.physics.gears import GearPair
+from gearopt.physics.geometry.contact import usable_path
 from gearopt.physics.iso6336.stiffness import mesh_stiffness, single_stiffness
 from gearopt.physics.slice_sharing import Springs
 from gearopt.physics.tooth.elastic import ElasticPair
 from gearopt.physics.tooth.ladder import USUAL, ring_torsion
+from gearopt.physics.tooth.slices import Sliced, normal_section
 
 
 @pytest.fixture(scope="module")
@@ -95,6 +98,50 @@ def test_sharing_at_a_position_is_the_optimum_of_its_quadratic_program():
     assert (forces == 0.0).any() and (forces > 0.0).sum() > 3
     assert np.array(found.design["f"]) * load == pytest.approx(forces, abs=1e-6 * load)
     assert found.multipliers["equilibrium"] == pytest.approx(shared.approach[0, at], rel=1e-8)
+
+
+def random_mesh(rng):
+    """A helical pair with modifications, misalignment and tip relief."""
+    teeth = int(rng.integers(17, 40)), int(rng.integers(40, 120))
+    module = rng.uniform(1.0, 6.0)
+    pair = GearPair.of_teeth(
+        module,
+        *teeth,
+        module * rng.uniform(4.0, 15.0),
+        rng.uniform(0.02, 0.6),
+        profile_shifts=(rng.uniform(0.0, 0.4), rng.uniform(-0.2, 0.2)),
+    )
+    bores = tuple(float(gear.root_diameter) / rng.uniform(1.5, 5.0) for gear in pair.gears)
+    force = rng.uniform(20.0, 400.0) * float(pair.face_width)
+    normal, path = normal_section(pair, bores), usable_path(pair)
+    level = compliance_of(normal, USUAL, force)
+    sliced = Sliced(pair, path, normal, level, force, 0.9 * ring_torsion(normal))
+    gaps = Modifications(*(1e-3 * rng.uniform((0.0, -20.0, -20.0), 20.0)))
+    long = rng.uniform(0.1, 0.8) * float(path.base_pitch)
+    reliefs = Relief(rng.uniform(0.0, 0.02), long), Relief(rng.uniform(0.0, 0.02), long, 2.0)
+    return FlankMesh.of(sliced, int(rng.integers(11, 42)), 12, (0.1, 1.0), gaps, reliefs)
+
+
+@pytest.mark.parametrize("count", [12, pytest.param(200, marks=pytest.mark.slow)])
+def test_random_pairs_meet_equilibrium_and_complementarity(count):
+    rng = np.random.default_rng(count)
+    for _ in range(count):
+        mesh = random_mesh(rng)
+        forces, approach, gaps = mesh.sharing
+        loads = mesh.sliced.force * np.array(mesh.loads)[:, None]
+        assert np.abs(forces.sum(axis=(-2, -1)) / loads - 1.0).max() < 1e-12
+        assert forces.min() >= 0.0 and gaps.min() >= 0.0
+        carries = forces > 0.0
+        assert not gaps[carries].any()
+        at = int(rng.integers(len(mesh.cycle.travels)))
+        springs = Springs(*(part[at] for part in mesh.springs[:3]), mesh.sliced.coupling)
+        apart = mesh.separated(mesh.reliefs)[at].ravel()
+        there = np.isfinite(apart)
+        for k in range(2):
+            moved = (matrix(springs) @ forces[k, at].ravel())[there] + apart[there]
+            assert moved - approach[k, at] == pytest.approx(
+                gaps[k, at].ravel()[there], abs=1e-12 * max(approach[k, at], apart[there].max())
+            )
 
 
 def test_a_helix_correction_makes_up_for_a_misalignment():

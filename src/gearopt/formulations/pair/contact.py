@@ -14,7 +14,7 @@ from gearopt.formulations.pair.relief.rules import tip_amounts
 from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.agma.factors import elastic_coefficient
-from gearopt.physics.geometry.contact import diameters_at
+from gearopt.physics.geometry.contact import ContactPath, diameters_at
 from gearopt.physics.mesh_cycle import break_points, cycle
 from gearopt.physics.tooth.elastic import ElasticPair
 from gearopt.physics.tooth.ladder import LEVELS
@@ -102,30 +102,44 @@ def contact(
 
     coupling: the name of its model; iso: c' and c_gamma_alpha [MPa].
     """
-    elastic, path = made.elastic, made.mesh.cycle.path
-    known = LEVELS[made.level]
-    errors = (*known.error, *known.wider)
+    path = made.mesh.cycle.path
     positions = made.mesh.cycle.along(made.mesh.cycle.positions)
+    teeth = teeth_columns(made.level, made.elastic, path, (coupling, made.mesh.coupling), iso)
+    columns = {name: column(values) for name, values in _columns(made, positions).items()}
     return PairContact(
-        level=made.level,
-        error_percent=(100.0 * min(errors), 100.0 * max(errors)),
-        plane=elastic.plane,
-        coupling=coupling,
-        coupling_mm_per_N=made.mesh.coupling,
-        pinion_bore_mm=elastic.bores[0],
-        wheel_bore_mm=elastic.bores[1],
-        base_pitch_mm=float(path.base_pitch),
-        contact_ratio=float(path.transverse_ratio),
-        iso_single_stiffness_MPa=iso[0],
-        iso_mesh_stiffness_MPa=iso[1],
+        **(teeth | columns),
         rule_relief_mm=tip_amounts(path, made.compliance, made.mesh.coupling, made.force),
         points=tuple(_points(made)),
         position_mm=column(positions),
-        **{name: column(values) for name, values in _columns(made, positions).items()},
         travel_mm=column(made.mesh.cycle.travels * path.base_pitch),
         loads=at_loads(made, made.mesh.separations(NO_RELIEF, NO_RELIEF)),
         validity=tuple(validity),
     )
+
+
+def teeth_columns(
+    level: str,
+    elastic: ElasticPair,
+    path: ContactPath,
+    coupling: tuple[str, float],
+    iso: tuple[float, float],
+) -> dict[str, Any]:
+    """Fields of `ElasticTeeth`; coupling: its name and value, iso: as of `contact`."""
+    known = LEVELS[level]
+    errors = (*known.error, *known.wider)
+    return {
+        "level": level,
+        "error_percent": (100.0 * min(errors), 100.0 * max(errors)),
+        "plane": elastic.plane,
+        "coupling": coupling[0],
+        "coupling_mm_per_N": coupling[1],
+        "pinion_bore_mm": elastic.bores[0],
+        "wheel_bore_mm": elastic.bores[1],
+        "base_pitch_mm": float(path.base_pitch),
+        "contact_ratio": float(path.transverse_ratio),
+        "iso_single_stiffness_MPa": iso[0],
+        "iso_mesh_stiffness_MPa": iso[1],
+    }
 
 
 def column(values: Any) -> Columns:

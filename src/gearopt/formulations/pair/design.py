@@ -61,17 +61,13 @@ class ContactLoad:
 
 
 @dataclass(frozen=True, kw_only=True)
-class PairContact:
-    """The contact of a spur pair.
+class ElasticTeeth:
+    """The teeth of a pair in contact, as they give way.
 
     level, plane, coupling: models of the teeth's compliance; the load of one pair of teeth moves
     the others by coupling_mm_per_N. error: least and largest of the level's stiffness against
     finite elements, of all pairs it was measured on. bores: where the gears are held. iso: c' and
-    c_gamma_alpha of ISO 6336-1, beside. path: columns along the path of contact from SAP to EAP,
-    both sides of points where pairs come and go. rule_relief: what off the tips of pinion and wheel
-    lets pairs come and go without load at the duty's torque, by rule. travel_mm: of the pinion's
-    base circle over one base pitch, 0 where a pair comes into contact. validity: sentences on what
-    models do not cover.
+    c_gamma_alpha of ISO 6336-1, beside.
     """
 
     level: str
@@ -85,6 +81,19 @@ class PairContact:
     contact_ratio: float
     iso_single_stiffness_MPa: float
     iso_mesh_stiffness_MPa: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class PairContact(ElasticTeeth):
+    """The contact of a spur pair.
+
+    path: columns along the path of contact from SAP to EAP,
+    both sides of points where pairs come and go. rule_relief: what off the tips of pinion and wheel
+    lets pairs come and go without load at the duty's torque, by rule. travel_mm: of the pinion's
+    base circle over one base pitch, 0 where a pair comes into contact. validity: sentences on what
+    models do not cover.
+    """
+
     rule_relief_mm: tuple[float, float]
     points: tuple[ContactPoint, ...]
     position_mm: Columns

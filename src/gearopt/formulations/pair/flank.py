@@ -111,12 +111,6 @@ class FlankMesh:
         return share_slices(self.springs, self.separated(self.reliefs)[None], forces[:, None])
 
     @cached_property
-    def lines(self) -> Array:
-        """Length of all contact lines together [mm] at every travel (p,)."""
-        part, _ = self.parts
-        return np.asarray(part.sum(axis=(-2, -1)) * self.face.slice_width / self.sliced.cosine)
-
-    @cached_property
     def told(self) -> Any:
         """Whether slices (p, n, m) touch over their width, on a contact line that is not `SHORT`.
 

@@ -5,7 +5,7 @@ Fields are keys of a result, with their units.
 
 from typing import Annotated
 
-from gearopt.formulations.pair.design import Columns
+from gearopt.formulations.pair.design import Columns, ElasticTeeth
 from gearopt.frozen import dataclass
 from gearopt.optimise.typed import Shown
 
@@ -54,24 +54,16 @@ class FlankLoad:
 
 
 @dataclass(frozen=True, kw_only=True)
-class FlankContact:
+class FlankContact(ElasticTeeth):
     """Contact over the flank of a pair of gears, helical or spur, by slices across the face.
 
-    level, plane, coupling, error, bores, iso: as of `PairContact`. crowning, helix_correction,
-    misalignment: gaps of both flanks together. relief: amounts at the tips of pinion and wheel,
-    lengths on the path and diameters where it starts. contact_lines: least, mean and largest length
-    of all, by closed form; lines_mm: at every travel. path_mm: positions s of the columns of a
+    crowning, helix_correction, misalignment: gaps of both flanks together. relief: amounts at the
+    tips of pinion and wheel, lengths on the path and diameters where it starts. contact_lines:
+    least, mean and largest length of all, by closed form. path_mm: positions s of the columns of a
     flank; place_mm: y of its rows, from the middle of the face towards the end where contact
     begins. travel_mm: over one base pitch.
     """
 
-    level: str
-    error_percent: tuple[float, float]
-    plane: str
-    coupling: str
-    coupling_mm_per_N: float
-    pinion_bore_mm: float
-    wheel_bore_mm: float
     slices: int
     crowning_mm: float
     helix_correction_mm: float
@@ -79,17 +71,12 @@ class FlankContact:
     relief_mm: tuple[float, float]
     relief_length_mm: tuple[float, float]
     relief_diameters_mm: tuple[float, float]
-    base_pitch_mm: float
     base_helix_angle_deg: float
     face_width_mm: float
-    contact_ratio: float
     overlap_ratio: float
     contact_lines_mm: tuple[float, float, float]
-    iso_single_stiffness_MPa: float
-    iso_mesh_stiffness_MPa: float
     path_mm: Columns
     place_mm: Columns
     travel_mm: Columns
-    lines_mm: Columns
     loads: tuple[FlankLoad, ...]
     validity: tuple[str, ...] = ()

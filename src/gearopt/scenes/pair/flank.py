@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 
 from gearopt.errors import SolveError
-from gearopt.formulations.pair.contact import column, compliance_of
+from gearopt.formulations.pair.contact import column, compliance_of, teeth_columns
 from gearopt.formulations.pair.flank import FlankMesh, Modifications, flank_loads
 from gearopt.formulations.pair.flank_design import FlankContact
 from gearopt.formulations.pair.flank_relief import problem, ranges_of
@@ -17,7 +17,7 @@ from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.contact import diameters_at, usable_path
 from gearopt.physics.geometry.tooth import base_helix_angle
 from gearopt.physics.mesh_cycle import NARROW
-from gearopt.physics.tooth.ladder import LEVELS, USUAL
+from gearopt.physics.tooth.ladder import USUAL
 from gearopt.physics.tooth.slices import Sliced
 from gearopt.scenes.pair.contact import (
     Materials,
@@ -86,9 +86,8 @@ def flank_contact_of(
     scene: Scene, mesh: FlankMesh, level: str, materials: Materials
 ) -> FlankContact:
     """Return the contact over the flank of a pair of a file, with the reliefs of its mesh."""
-    sliced, face, known = mesh.sliced, mesh.face, LEVELS[level]
+    sliced, face = mesh.sliced, mesh.face
     pair, path, elastic = sliced.pair, sliced.path, sliced.normal
-    errors = (*known.error, *known.wider)
     coupling = scene.sharing.coupling
     iso = stiffnesses_by_iso(scene, pair, elastic, materials)
     loads = flank_loads(mesh)
@@ -96,18 +95,14 @@ def flank_contact_of(
     most = max(load.largest_contact_stress_MPa for load in loads)
     held = [float(relief.amount) for relief in mesh.reliefs]
     long = [float(relief.length) if relief.amount else 0.0 for relief in mesh.reliefs]
-    bores = [
+    coupled = ("given" if isinstance(coupling, Quantity) else coupling), sliced.coupling
+    first, second = (
         float(bore * gear.root_diameter / virtual.root_diameter)
         for bore, virtual, gear in zip(elastic.bores, elastic.pair.gears, pair.gears, strict=True)
-    ]
+    )
+    teeth = teeth_columns(level, elastic, path, coupled, iso)
     return FlankContact(
-        level=level,
-        error_percent=(100.0 * min(errors), 100.0 * max(errors)),
-        plane=elastic.plane,
-        coupling="given" if isinstance(coupling, Quantity) else coupling,
-        coupling_mm_per_N=sliced.coupling,
-        pinion_bore_mm=bores[0],
-        wheel_bore_mm=bores[1],
+        **(teeth | {"pinion_bore_mm": first, "wheel_bore_mm": second}),
         slices=face.count,
         crowning_mm=mesh.modifications.crowning,
         helix_correction_mm=mesh.modifications.helix_correction,
@@ -118,18 +113,13 @@ def flank_contact_of(
             float(diameters_at(pair, path, path.end - long[0])[0]),
             float(diameters_at(pair, path, path.start + long[1])[1]),
         ),
-        base_pitch_mm=float(path.base_pitch),
         base_helix_angle_deg=math.degrees(math.atan(face.slope)),
         face_width_mm=face.width,
-        contact_ratio=float(path.transverse_ratio),
         overlap_ratio=float(pair.overlap_ratio),
         contact_lines_mm=_lengths(pair, float(path.transverse_ratio), mean_length(pair, path)),
-        iso_single_stiffness_MPa=iso[0],
-        iso_mesh_stiffness_MPa=iso[1],
         path_mm=column(mesh.path_columns),
         place_mm=column(face.places),
         travel_mm=column(mesh.cycle.travels * path.base_pitch),
-        lines_mm=column(mesh.lines),
         loads=loads,
         validity=(*beyond, *yielding(most)),
     )

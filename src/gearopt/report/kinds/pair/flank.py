@@ -217,21 +217,7 @@ def _figures(flank: FlankContact, measures: Measures) -> list[Figure]:
     return [
         Figure(*pictured, f"Force per face width over the flank, {at}. {whole}"),
         Figure(*pressure, f"Hertz's contact stress over the flank, {at}."),
-        _curves(
-            flank,
-            [measures.of(1.0, "um") * np.asarray(o.transmission_error_mm) for o in flank.loads],
-            f"transmission error [{measures.unit('um')}]",
-            "Transmission error over one base pitch: approach along the line of action, by the "
-            "load.",
-            measures,
-        ),
-        _curves(
-            flank,
-            [measures.of(1.0, "mm") * np.asarray(flank.lines_mm)],
-            f"length of contact lines [{measures.unit('mm')}]",
-            "Length of all contact lines together over one base pitch.",
-            measures,
-        ),
+        _errors(flank, measures),
     ]
 
 
@@ -285,30 +271,29 @@ def _moment(flank: FlankContact, length: float) -> list[dict[str, Any]]:
     return traces
 
 
-def _curves(
-    flank: FlankContact, values: Sequence[Any], head: str, caption: str, measures: Measures
-) -> Figure:
-    """Plot values over one base pitch of travel, one curve a load where there are several."""
+def _errors(flank: FlankContact, measures: Measures) -> Figure:
+    """Plot the transmission error over one base pitch of travel, at every load."""
     x = [round(measures.of(v, "mm"), 5) for v in flank.travel_mm]
-    several = len(values) == len(flank.loads) and len(values) > 1
-    traces = []
-    for k, each in enumerate(values):
-        y = [float(f"{v:.6g}") for v in each]
+    traces, several = [], len(flank.loads) > 1
+    for k, load in enumerate(flank.loads):
+        y = [float(f"{measures.of(v, 'um'):.6g}") for v in load.transmission_error_mm]
         trace = curve(x, y, series(k + 1), 2.0, DASHES[k % len(DASHES)], hover="%{y:.4g}")
-        name = f"at {100.0 * flank.loads[k].load:g} %" if several else ""
-        traces.append(trace | {"name": name, "showlegend": several})
+        traces.append(trace | {"name": f"at {100.0 * load.load:g} %", "showlegend": several})
     plot = layout(
-        axis(f"travel [{measures.unit('mm')}]"), axis(head, rangemode="tozero"), 300, hovermode="x"
+        axis(f"travel [{measures.unit('mm')}]"),
+        axis(f"transmission error [{measures.unit('um')}]", rangemode="tozero"),
+        300,
+        hovermode="x",
     )
     plot["margin"] |= {"t": 44 if several else 24}
-    return Figure(traces, plot, caption)
+    said = "Transmission error over one base pitch: approach along the line of action, by the load."
+    return Figure(traces, plot, said)
 
 
 def _tables(flank: FlankContact, measures: Measures) -> list[Table]:
     """CSV files: errors over a base pitch, and the flank at every load."""
     listed: list[tuple[str, Sequence[float], str]] = [
         ("travel", flank.travel_mm, "mm"),
-        ("contact lines", flank.lines_mm, "mm"),
     ]
     for load in flank.loads:
         head = f"transmission error at {100.0 * load.load:g} %"
