@@ -74,10 +74,11 @@ def flank_mesh_of(
     except ImportError as reason:  # of finite elements, an extra
         raise SolveError(str(reason)) from None
     if least <= 0.0:
+        other = "" if teeth.level == USUAL else f'level = "{USUAL}", or '
         raise SolveError(
             f'[sharing] level = "{teeth.level}" makes teeth stiffer than their contact and '
-            "coupling alone, so that slices have nothing to hold each other by: write level = "
-            f'"{USUAL}", or coupling = "none"'
+            "coupling alone, so that slices have nothing to hold each other by: write "
+            f'{other}coupling = "none"'
         )
     return mesh, teeth.level
 
