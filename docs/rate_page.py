@@ -90,6 +90,8 @@ beside the factor.
 
 {read}
 
+Gears of a kept result are rated as they are, `gearopt rate drive.json`; a file may
+[take them from another one](from_drive_to_dynamics.md).
 A design of a Pareto front is rated by its number: `gearopt rate front.json --design 9`
 ([Trade-offs](trade_offs.md#a-page-to-pick-from)).
 

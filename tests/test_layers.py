@@ -25,7 +25,7 @@ OUTSIDE = {  # at module level; what is imported inside functions is free
     "report": {"numpy", "rich"},  # cli imports it inside functions
     "bench": {"numpy"},
 }
-TOP = {"units": set(), "errors": set(), "frozen": set()}
+TOP = {"units": set(), "errors": set(), "frozen": set(), "stages": {"optimise", "scenes", "api"}}
 
 
 @cache

@@ -26,7 +26,7 @@ from gearopt.optimise.workers import working
 from gearopt.scenes.explaining.possible import without_design
 from gearopt.scenes.kind import Kind
 from gearopt.scenes.reading.ask import Ask
-from gearopt.scenes.reading.linked_files import inputs_of
+from gearopt.scenes.reading.linked_files import inputs_of, stopped_early
 from gearopt.scenes.reading.load import FORMAT, bare, kind_named, kind_of
 from gearopt.scenes.reading.load import load as load_file
 
@@ -47,7 +47,8 @@ def load(what: File, changes: Changes = None) -> BaseModel:
     otherwise than in the file, by the keys that `explain` writes: {"duty.power": "9 kW",
     "stage[2].face_width_over_diameter": 0.7, "limits.pinion_teeth[2]": 60}; counted from 1. A key
     that the file lacks is added, None removes one, and a dict stands for a whole table. Other files
-    that it names stand beside the file, or in the working directory for tables.
+    that it names stand beside the file, or in the working directory for tables; one whose gears it
+    takes is solved.
     """
     return _opened(what, changes)[0]
 
@@ -99,7 +100,7 @@ def solve(
             return solve_own(what, method, budget, seed, watch, gap, start)
     _only_of_problems(start)
     ask = Ask(method, budget, seed, watch, gap, top)
-    scene, kind, names = _opened(what, changes)
+    scene, kind, names, ask = _opened_for(what, changes, ask)
     if why := kind.idle(scene, method).get("top"):
         if top > 1:
             raise SolveError(f"top={top} changes nothing here: {why}; leave it out")
@@ -110,17 +111,29 @@ def solve(
         result = _with_prices(result, scene, kind, ask.for_prices(prices, result.seconds))
     if remedies and without_design(result):
         result = _with_remedies(result, what, changes, scene, kind, ask, begun)
-    if inputs := inputs_of(scene):
-        result = replace(result, report=result.report | {"inputs": inputs})
+    result = _with_inputs(result, scene)
     return _named(result, **names | {"options": asked | names["options"]})
 
 
+def _with_inputs(result: Result, scene: BaseModel) -> Result:
+    """A result with the files it rests on, each with its hash, and what is not final there."""
+    if not (inputs := inputs_of(scene)):
+        return result
+    report = result.report | {"inputs": inputs}
+    if notes := stopped_early(scene):
+        report["notes"] = [*report.get("notes", []), *notes]
+    return replace(result, report=report)
+
+
 @in_turn
-def rate(what: "File | Front", changes: Changes = None, *, design: int | None = None) -> Result:
+def rate(
+    what: "File | Front | Result", changes: Changes = None, *, design: int | None = None
+) -> Result:
     """Return the rating of the gears that a problem file gives: the table [rating] says by what.
 
     changes: of a file, as in `load`. design: the number of a design of a Front, from 1, which is
-    rated as gears that are given, by the file of the front. The status is `evaluated`;
+    rated as gears that are given, by the file of the front; that of a Result is rated likewise. The
+    status is `evaluated`;
     `Result.feasible` says whether all safety factors are met, limits holds them as utilisations
     (asked for over there), and design["rating"] stresses, safety factors, lives, factors, forces
     and tooth geometry.
@@ -132,11 +145,15 @@ def rate(what: "File | Front", changes: Changes = None, *, design: int | None = 
         return _rate_design(what, changes, design)
     if design is not None:
         raise SolveError(f"design={design} is for a Front, as `pareto` returns it; leave it out")
+    if isinstance(what, Result):
+        if changes is not None:
+            raise SolveError("changes are those of a problem file; a result is rated as it is")
+        return _rate_found(what, what.design, {})
     scene, kind, names = _opened(what, changes)
     if kind.rate is None:
         name = names["scene"]
         raise SolveError(f'rate takes kind = "drive", not "{name}"; gearopt solve rates a pair')
-    return _named(kind.rate(scene, Ask()), **names)
+    return _named(_with_inputs(kind.rate(scene, Ask()), scene), **names)
 
 
 def _rate_design(front: "Front", changes: Changes, design: int | None) -> Result:
@@ -144,7 +161,7 @@ def _rate_design(front: "Front", changes: Changes, design: int | None) -> Result
     count = len(front.points)
     if changes is not None:
         raise SolveError("changes are those of a problem file; a design of a front is as it is")
-    if front.scene is None or (kind := kind_named(front.scene)).rate_design is None:
+    if front.scene is None or kind_named(front.scene).rate_design is None:
         of = "a Problem" if front.scene is None else f'kind = "{front.scene}"'
         raise SolveError(f'designs of fronts are rated of kind = "drive"; this front is of {of}')
     if not count:
@@ -152,9 +169,16 @@ def _rate_design(front: "Front", changes: Changes, design: int | None) -> Result
     if design is None or not 1 <= design <= count:
         wrong = "name a design" if design is None else f"there is no design {design}"
         raise SolveError(f"{wrong} of the front, from 1 to {count}")
-    scene, _, names = _opened(front.asked, None)
-    result = kind.rate_design(scene, Ask(), front.points[design - 1].design)
-    return _named(result, **names | {"options": {"design": design}})
+    return _rate_found(front, front.points[design - 1].design, {"design": design})
+
+
+def _rate_found(kept: "Front | Result", design: Mapping[str, Any], options: Any) -> Result:
+    """Return the rating of a design that was found, as of gears that are given."""
+    scene, kind, names = _opened(kept.asked, None)
+    if kind.rate_design is None or not design:
+        raise SolveError('of results the gears of kind = "drive" are rated, where there are any')
+    result = kind.rate_design(scene, Ask(), design)
+    return _named(_with_inputs(result, scene), **names | {"options": options})
 
 
 @in_turn
@@ -185,10 +209,17 @@ def explain(
     if isinstance(what, Problem):
         _unchanged(what, changes)
         return explained_as_asked(explain_problem(what, budget, watch))
-    ask = Ask(budget=budget, watch=watch)
-    scene, kind, names = _opened(what, changes)
+    scene, kind, names, ask = _opened_for(what, changes, Ask(budget=budget, watch=watch))
     explained = explanation(kind, scene, ask)
-    return replace(explained, result=_named(explained.result, **names))
+    result = _with_inputs(explained.result, scene)
+    return replace(explained, result=_named(result, **names), message=_whose(explained, scene))
+
+
+def _whose(explained: "Explanation", scene: BaseModel) -> str:
+    """What an explanation says of a file that takes its gears from others, after its own words."""
+    others = ", ".join(inputs_of(scene)) if explained.influences else ""
+    said = f"the numbers of {others} are not among these" if others else ""
+    return "; ".join(filter(None, (explained.message, said)))
 
 
 def _with_prices(result: Result, scene: BaseModel, kind: Kind[Any], ask: Ask) -> Result:
@@ -222,9 +253,12 @@ def _with_remedies(
     return replace(result, report=report, seconds=clock.seconds)
 
 
-def idle_options(what: File, method: str | None) -> dict[str, str]:
+def idle_options(
+    what: File, method: str | None, budget: Budget | None = None, watch: Watch | None = None
+) -> dict[str, str]:
     """Return the options of `solve` that change nothing for a file, each with the reason."""
-    scene, kind, _ = _opened(what, None)
+    ask = Ask(budget=budget or Budget(), watch=watch)
+    scene, kind, *_ = _opened_for(what, None, ask)
     return kind.idle(scene, method)
 
 
@@ -288,7 +322,8 @@ def compare(
     plan = Plan(evaluations, seconds, seeds)
     methods = methods.split(",") if isinstance(methods, str) else methods
     if objectives is not None:
-        pose, names, about = _traded(what, changes, objectives)
+        asking = Ask(budget=Budget(seconds))
+        pose, names, about = _traded(what, changes, objectives, asking)
         comparison = _fronts(pose, names, most, methods, plan, watch, bound_from)
         return replace(comparison, **_of_comparison(about))
     if most is not None:
@@ -301,7 +336,8 @@ def compare(
         model = Model(what)
         comparison = compare_methods(chosen, lambda method: model, plan, watch, bound_from)
         return replace(comparison, title=what.name)
-    scene, kind, about = _opened(what, changes)
+    asking = Ask(budget=Budget(seconds))
+    scene, kind, about = _opened(what, changes, asking)
     chosen = kind.methods_to_compare(scene) if methods is None else methods
     comparison = compare_methods(chosen, lambda m: kind.posed(scene, m), plan, watch, bound_from)
     title = getattr(scene, "title", "") or about["scene"]
@@ -342,7 +378,10 @@ def _fronts(
 
 
 def _traded(
-    what: File | Problem | Conic, changes: Changes, objectives: Sequence[str] | str | None
+    what: File | Problem | Conic,
+    changes: Changes,
+    objectives: Sequence[str] | str | None,
+    asking: Ask,
 ) -> tuple[Callable[[Ask], Tradeoff], tuple[str, ...], dict[str, Any]]:
     """Return how objectives are posed as is asked, their names, and the names of a file."""
     names = objectives.split(",") if isinstance(objectives, str) else objectives
@@ -355,7 +394,7 @@ def _traded(
             tuple(o.name for o in tradeoff.objectives),
             {"title": what.name},
         )
-    scene, kind, about = _opened(what, changes)
+    scene, kind, about = _opened(what, changes, asking)
     known = kind.trades.objectives(scene)
     left = [name for name in names or () if name not in known]
     if left and (why := kind.trades.advice(scene, left)):
@@ -402,7 +441,8 @@ def pareto(
     check(most=most, weights=weights)
     budget, watch, most = budget or Budget(), whole(watch), dict(most or {})
     clock = Clock(budget)
-    pose, _, about = _traded(what, changes, objectives)
+    asking = Ask(budget=budget, watch=watch).beforehand
+    pose, _, about = _traded(what, changes, objectives, asking)
     options: dict[str, Any] = {"method": method, "seconds": budget.seconds, "points": points}
     options |= {"most": most, "weights": weights, "seed": seed}
     about["options"] = options | about.get("options", {})
@@ -426,8 +466,23 @@ def _unchanged(problem: Problem | Conic, changes: Changes) -> None:
         )
 
 
-def _opened(what: File, changes: Changes) -> tuple[BaseModel, Kind[Any], dict[str, Any]]:
-    """Return the scene of what was given, its kind, and its names for a result."""
+def _opened_for(
+    what: File, changes: Changes, ask: Ask
+) -> tuple[BaseModel, Kind[Any], dict[str, Any], Ask]:
+    """Return what `_opened` does, and what is left to ask once its gears are known."""
+    begun = time.perf_counter()
+    scene, kind, names = _opened(what, changes, ask.beforehand)
+    spent = time.perf_counter() - begun if inputs_of(scene) else 0.0
+    return scene, kind, names, replace(ask, budget=ask.budget.less(spent))
+
+
+def _opened(
+    what: File, changes: Changes, asking: Ask | None = None
+) -> tuple[BaseModel, Kind[Any], dict[str, Any]]:
+    """Return the scene of what was given, its kind, and its names for a result.
+
+    asking: by which a file is solved whose gears it takes.
+    """
     if not isinstance(changes, Mapping | NoneType):
         raise ValueError(
             f"{changes!r} is not a dict of changes, such as {{'duty.power': '9 kW'}}; options have "
@@ -447,7 +502,7 @@ def _opened(what: File, changes: Changes) -> tuple[BaseModel, Kind[Any], dict[st
         what = {"gearopt": FORMAT, "kind": kind, **content(scene)}
         if not changes:
             return scene, kind_named(kind), {"scene": kind, "asked": bare(what), "options": {}}
-    loaded = load_file(what, changes)
+    loaded = load_file(what, changes, asking)
     names: dict[str, Any] = {
         "scene": loaded.kind,
         "file": loaded.file,

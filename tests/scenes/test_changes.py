@@ -139,7 +139,7 @@ def test_other_files_stand_in_the_working_directory(tmp_path, monkeypatch):
 
     seen = []
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("gearopt.scenes.reading.load.Opened", lambda files: seen.append(files))
+    monkeypatch.setattr("gearopt.scenes.reading.load.Opened", lambda files, ask: seen.append(files))
     load(tables())
     load(ELEVATOR, {"duty.power": "9 kW"})
     assert [files[-1].parent for files in seen] == [tmp_path, PROBLEMS]

@@ -25,7 +25,7 @@ from gearopt.cli.app import (
     print_whole,
 )
 from gearopt.cli.names import method_lists, method_words
-from gearopt.cli.reporting import answer, checked, compared, kept_front, written
+from gearopt.cli.reporting import answer, checked, compared, kept_design, written
 from gearopt.cli.watching import following, reached, watching
 from gearopt.errors import GearoptError
 from gearopt.optimise.comparing.plan import EVALUATIONS, SEEDS, Progress
@@ -90,11 +90,11 @@ def solve(
     if not full:
         _metric(as_json, units)
     unusual = full or seed or (top or 1) > 1
-    idle = idle_options(file, method) if unusual else {}
-    _refuse({"top": (top, 1), "seed": (seed, 0)}, idle)
-    if top is None:
-        top = TOP_ON_PAGE if full and "top" not in idle else 1
     with watching(seconds, quiet=as_json, measures=files.measures) as watch:
+        idle = idle_options(file, method, Budget(seconds), watch) if unusual else {}
+        _refuse({"top": (top, 1), "seed": (seed, 0)}, idle)
+        if top is None:
+            top = TOP_ON_PAGE if full and "top" not in idle else 1
         result = solve_file(
             file,
             method=method,
@@ -146,20 +146,19 @@ def rate(
     units: Units = None,
     as_json: Json = False,
 ) -> None:
-    """Rate given gears: stresses, safety factors, lives. Exit code 0, safe or not; 3 if unfit."""
+    """Rate given gears, or those of a kept result: stresses, safety factors, lives.
+
+    Exit code 0, safe or not; 3 if unfit.
+    """
     from gearopt.api import rate as rate_file
 
     files = checked(html, csv, units or units_of(file), file)
     if html is None and csv is None:
         _metric(as_json, units)
-    if design is None and file.suffix == ".json":
-        raise GearoptError(
-            f"{file}: is no problem file; of a Pareto front add --design 1, or another"
-        )
-    if design is None:
+    if design is None and file.suffix != ".json":
         result = rate_file(file)
     else:
-        result = rate_file(kept_front(file), design=design)
+        result = rate_file(kept_design(file, design), design=design)
         digest = hashlib.sha256(file.read_bytes()).hexdigest()
         result = replace(result, file=str(file), file_sha256=digest)
     lines: list[str] = []

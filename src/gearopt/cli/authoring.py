@@ -27,7 +27,10 @@ def check(
     ],
     as_json: Json = False,
 ) -> None:
-    """Read problem files and report their mistakes, without solving."""
+    """Read problem files and report their mistakes, without solving.
+
+    Another file whose gears one takes is solved, as they must agree.
+    """
     from gearopt.scenes.reading.load import load
 
     reports: list[dict[str, Any]] = []

@@ -206,14 +206,20 @@ def _make_folder(folder: Path) -> None:
         raise GearoptError(f"--csv {folder}: {refused.strerror}") from refused
 
 
-def kept_front(file: Path) -> "Front":
-    """The Pareto front that a file keeps; GearoptError for anything else."""
+def kept_design(file: Path, design: int | None) -> "Front | Result":
+    """The result or Pareto front that a file keeps; GearoptError for anything else.
+
+    design: a number is of a front alone, and a front needs one.
+    """
     from gearopt.optimise.pareto.front import Front
 
-    kept = _read(file, HOW_FRONT)
-    if not isinstance(kept, Front):
-        raise GearoptError(f"{file}: is no Pareto front, so --design has none; {HOW_FRONT}")
-    return kept
+    kept = _read(file, HOW if design is None else HOW_FRONT)
+    if isinstance(kept, Front) and design is None:
+        raise GearoptError(f"{file}: is a Pareto front: add --design 1, or another of its designs")
+    if isinstance(kept, Front) or (isinstance(kept, Result) and design is None):
+        return kept
+    what = "result" if design is None else "Pareto front, so --design has none"
+    raise GearoptError(f"{file}: is no {what}; {HOW if design is None else HOW_FRONT}")
 
 
 def _read(file: Path, how: str = HOW) -> "Kept":

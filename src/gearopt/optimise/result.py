@@ -220,6 +220,13 @@ class Result:
         rows: list[dict[str, Any]] = shown("table_rows", self, name, units)
         return rows
 
+    def stage(self, number: int | None = None) -> Any:
+        """Return a stage of the gears found, counted from 1; without a number the only one.
+
+        Of it `pair`, `rate` and `dynamics` are answered as files are that take their gears from it.
+        """
+        return import_module(STAGES).StageOfResult(self, number)
+
     def to_html(self, units: str = "metric") -> str:
         """Return its page, one self-contained HTML text; units: "metric" or "inch"."""
         return str(shown("whole_page", self, units))
@@ -258,6 +265,7 @@ class Result:
         return cls.from_dict(loads(text))
 
 
+STAGES = "gearopt.stages"  # what is made of the gears of an answer, likewise by name
 SHOWN = "gearopt.report.shown"  # who shows an answer, by name: this room imports no report
 
 

@@ -108,6 +108,19 @@ class Blank:
             off = off + self.where_rim(gear, recess, 0.0)
         return 0.25 * np.pi * gear.width * (gear.body**2 - off)
 
+    def inertia(self, gear: Gear, density: Any) -> Any:
+        """Return the moment of inertia [t mm2] about the axis of what `volume` counts.
+
+        (pi/32) rho b (d^4 - (1 - b_s/b)((d_f - 2 s_R)^4 - (h d_i)^4) - d_i^4): discs taken off.
+        """
+        if self.solid or is_internal(gear.teeth):
+            return gear.inertia(density)
+        off: Any = self.where_bore(gear, self.bore**4, 0.0)
+        if self.has_web:
+            recess = (1.0 - self.web_over_width) * (self.inside(gear) ** 4 - self.hub**4)
+            off = off + self.where_rim(gear, recess, 0.0)
+        return np.pi / 32.0 * density * gear.width * (gear.body**4 - off)
+
     @property
     def _hub_part(self) -> float:
         """Part of the area of its hub that a bored gear keeps: 1 - 1/h^2."""

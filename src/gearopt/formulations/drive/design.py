@@ -136,6 +136,25 @@ class StageDesign:
         return (first, second) if self.driver == "pinion" else (second, first)
 
     @property
+    def bodies(self) -> tuple[float, float]:
+        """Diameters [mm] of the cylinders as which a pair counts.
+
+        d, or d + 2 x m_n where shifts were chosen, see `Toothing`: its volume tells which.
+        """
+        d = self.pinion_diameter_mm, self.wheel_diameter_mm
+        shifts = self.pinion_profile_shift, self.wheel_profile_shift
+        each = zip(d, shifts, strict=True)
+        shifted = [one + 2.0 * x * self.normal_module_mm for one, x in each]
+        widths = [gear.width for gear in self.pair.gears]
+
+        def off(diameters: Sequence[float]) -> float:
+            rows = zip(widths, diameters, strict=True)
+            volume = sum(0.25 * math.pi * float(b) * one**2 for b, one in rows)
+            return abs(volume - self.gear_volume_mm3)
+
+        return (shifted[0], shifted[1]) if off(shifted) < off(d) else d
+
+    @property
     def pair(self) -> GearPair:
         """The gears with their teeth, at their centre distance."""
         shifted = self.working_pressure_angle_deg is not None

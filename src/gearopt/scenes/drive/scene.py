@@ -20,6 +20,7 @@ from gearopt.scenes.drive.described_layout import disc
 from gearopt.scenes.drive.distances import joint_limits, reach, rows_together
 from gearopt.scenes.drive.driving import check_driving, may_drive, ratio_of
 from gearopt.scenes.drive.face_widths import check_excess, check_width, excesses, face_width
+from gearopt.scenes.drive.handed_on import TAKES_DRIVE
 from gearopt.scenes.drive.idlers import check_idlers, with_idlers
 from gearopt.scenes.drive.places import ENDS, KEYS
 from gearopt.scenes.drive.planetary import (
@@ -157,6 +158,8 @@ class Scene(ProblemFile):
             except PydanticCustomError as wrong:
                 raise renamed(each, wrong) from None
         return self
+
+    _taken = TAKES_DRIVE
 
     def _check(self) -> None:
         number = len(self.stage)

@@ -8,7 +8,9 @@ from pydantic import model_validator
 from gearopt.formulations.dynamics.orbit.task import Task
 from gearopt.physics.motion.moving_pair import MovingPair, Rotor, damping_of
 from gearopt.physics.motion.stiffness_wave import Wave, constant, fourier, trapezoid
+from gearopt.scenes.dynamics.handed_on import TAKES_ROTORS
 from gearopt.scenes.dynamics.tables import (
+    GearsTable,
     MeshTable,
     OptimiseTable,
     RotorTable,
@@ -32,6 +34,7 @@ SHAPED = ("stiffness", "depth", "duty", "ramp", "cosines", "sines", "pair")
 class Scene(ProblemFile):
     """A spur pair whose axes move on their bearings."""
 
+    gears: GearsTable | None = None
     pinion: RotorTable
     wheel: RotorTable
     mesh: MeshTable
@@ -76,6 +79,8 @@ class Scene(ProblemFile):
         self._check_asked()
         self._check_optimise()
         return self
+
+    _taken = TAKES_ROTORS
 
     @property
     def _pull(self) -> float:

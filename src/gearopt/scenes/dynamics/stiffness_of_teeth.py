@@ -2,19 +2,22 @@
 
 import math
 from collections.abc import Iterator
-from typing import Any
 
 from gearopt.errors import SceneError
-from gearopt.formulations.drive.design import DriveDesign, drive_design
 from gearopt.formulations.dynamics.parts import nearest_load, of_contact
 from gearopt.formulations.pair.design import ContactLoad, PairContact, PairRelief
 from gearopt.optimise.typed import typed
-from gearopt.physics.gears import GearPair
 from gearopt.physics.motion.stiffness_wave import Wave
+from gearopt.scenes.dynamics.handed_on import rotors_of
 from gearopt.scenes.dynamics.scene import Scene
 from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.reading.handed_on import same, text_of
+from gearopt.scenes.reading.linked_files import Input
 
-SAME = 1e-3  # relative, of dimensions that are one: digits of a file
+GEOMETRY = (  # that both files have
+    *(("mesh", "teeth"), ("mesh", "pressure_angle")),
+    *(("pinion", "base_diameter"), ("wheel", "base_diameter")),
+)
 NEAR = 0.01  # relative, of normal forces that are one
 
 
@@ -24,13 +27,14 @@ def of_teeth(scene: Scene, ask: Ask) -> tuple[Wave, list[str]]:
     SceneError where that pair has other teeth than the file.
     """
     assert scene.mesh.pair is not None and scene.pinion.torque is not None
-    named, design = scene.mesh.pair, scene.mesh.pair.result(ask).design
+    named = scene.mesh.pair.answered(ask)
+    design = named.result(ask).design
     if "contact" not in design:
         rule = "has its contact by slices of the face: the mesh stiffness is taken from spur pairs"
         tell = "Take the file of a spur pair without a table [flank]"
         raise SceneError(named.file, "", "", rule, tell)
     contact: PairContact = typed(PairContact, design["contact"], "contact")
-    if others := list(_others(scene, drive_design(design))):
+    if others := list(_others(scene, named, ask)):
         rule = f"has other teeth than this file: {'; '.join(others)}"
         raise SceneError(named.file, "", "", rule, "Write those of the pair's file")
     held = design.get("relief")
@@ -41,24 +45,14 @@ def of_teeth(scene: Scene, ask: Ask) -> tuple[Wave, list[str]]:
     return of_contact(contact, load), list(_assumed(str(named), load, force, relief is not None))
 
 
-def _others(scene: Scene, design: DriveDesign) -> Iterator[str]:
-    """Yield in words where the pair of a design is not that of the file."""
-    pair: GearPair = design.stages[0].pair
-    degrees = math.degrees(scene.mesh.pressure_angle.value)
-    rows: tuple[tuple[str, float, Any, str], ...] = (
-        ("[mesh] teeth", scene.mesh.teeth, pair.pinion.teeth, ""),
-        ("[mesh] pressure_angle", degrees, math.degrees(pair.working_angle), " deg"),
-        (
-            "[pinion] base_diameter",
-            scene.pinion.base_diameter.value,
-            pair.pinion.base_diameter,
-            " mm",
-        ),
-        ("[wheel] base_diameter", scene.wheel.base_diameter.value, pair.wheel.base_diameter, " mm"),
-    )
-    for name, given, its, unit in rows:
-        if not math.isclose(given, float(its), rel_tol=SAME):
-            yield f"{name} is {given:.6g}{unit}, of the pair's file {float(its):.6g}{unit}"
+def _others(scene: Scene, named: Input, ask: Ask) -> Iterator[str]:
+    """Yield in words where the pair of another file is not that of the file."""
+    follows = rotors_of(named, None, ask).follows
+    for table, name in GEOMETRY:
+        given, its = getattr(getattr(scene, table), name), follows[table, name]
+        if not same(given, its):
+            is_its = f"{text_of(given, given)}, of the pair's file {text_of(its, given)}"
+            yield f"[{table}] {name} is {is_its}"
 
 
 def _assumed(name: str, load: ContactLoad, force: float, relieved: bool) -> Iterator[str]:

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from gearopt.physics.motion.kinematics import KINEMATICS
 from gearopt.scenes.reading.fields import Table, choice, number, quantity, truth, whole
-from gearopt.scenes.reading.linked_files import Input, result_of
+from gearopt.scenes.reading.linked_files import Input, result_of, takes_gears
 from gearopt.scenes.reading.lists import several, span
 from gearopt.units import Quantity
 
@@ -16,6 +16,11 @@ WAVES = ("constant", "rectangle", "trapezoid", "fourier", "pair")
 MOST_OUTPUTS = 20001
 SHARE = number(0.03, 0, 1, percent=True, zero=True)
 SPEEDS = span(quantity("speed", "1500 rpm"), ["1500 rpm", "6000 rpm"])
+
+
+@takes_gears
+class GearsTable(Table):
+    """The pair, where another file has it: base circles, bodies, torque, speed and stiffness."""
 
 
 class RotorTable(Table):

@@ -22,6 +22,7 @@ MET = 5e-9  # relative, by which it may miss: half of what a row may exceed its 
 STEP_FROM_ZERO = Fraction(1, 10)  # step from zero, in the unit of a number
 SLIGHT = 1e-4  # mm; by at most this a length in a remedy is rounded
 Path = tuple[str | int, ...]
+COUNTS: set[Path] = {("stages",), ("stages", 0), ("stages", 1), ("gears", "stage")}
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ def numbers(scene: BaseModel, defaults: bool = False) -> tuple[Number, ...]:
 
     defaults: those too that the file leaves out.
     """
-    return tuple(n for n in _walk(scene, (), defaults) if n.path[0] != "stages")
+    return tuple(n for n in _walk(scene, (), defaults) if n.path not in COUNTS)
 
 
 def _walk(value: Any, path: Path, defaults: bool) -> Iterator[Number]:
@@ -140,21 +141,29 @@ def allowed(scene: BaseModel) -> bool:
     return True
 
 
-def content(scene: BaseModel) -> dict[str, Any]:
-    """Content of the file of a scene, to be read again by its own rules."""
-    tables: dict[str, Any] = _content(scene, ())
+def content(scene: BaseModel, given: bool = True) -> dict[str, Any]:
+    """Content of the file of a scene, or of a table, to be read again by its own rules.
+
+    given: what the file itself has; else whatever is not the usual value.
+    """
+    tables: dict[str, Any] = _content(scene, (), given)
     return tables
 
 
-def _content(value: Any, path: Path) -> Any:
+def _content(value: Any, path: Path, given: bool) -> Any:
     if isinstance(value, BaseModel):
         return {
-            name: _content(getattr(value, name), (*path, name))
-            for name in type(value).model_fields
-            if name in value.model_fields_set and getattr(value, name) is not None
+            name: _content(held, (*path, name), given)
+            for name, info in type(value).model_fields.items()
+            if (held := getattr(value, name)) is not None
+            and (
+                name in value.model_fields_set
+                if given
+                else held != info.get_default(call_default_factory=True)
+            )
         }
     if isinstance(value, tuple):
-        values = [_content(v, path) for v in value]
+        values = [_content(v, path, given) for v in value]
         return values[::-1] if in_reverse(value, path) else values
     return written(value, path)
 

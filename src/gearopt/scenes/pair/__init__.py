@@ -268,6 +268,7 @@ def _to_size(scene: Scene) -> Scene:
 
 ABOUT = {  # files in examples, that of the kind first
     "pair": "a gear pair, sized or given, and how its teeth share the load",
+    "pair-of-a-drive": "a pair that is a stage of a drive's file",
     "sized-pair": "a spur pair from duty and steel alone, and how its teeth share the load",
 }
 KIND = Kind(

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 from pydantic import Field, ValidationError, model_validator
 
 from gearopt.physics.gears import GearPair
+from gearopt.scenes.drive.handed_on import TAKES_STAGE
 from gearopt.scenes.drive.rating.checks import check_pinion, not_given
 from gearopt.scenes.drive.rating.gears import given_pairs
 from gearopt.scenes.drive.rating.materials import MaterialTable
@@ -102,6 +103,8 @@ class Scene(ProblemFile):
             check_pair(self.given_pair, self.stage[0], self.gears)
             check_level(self.given_pair, self.sharing.level)
         return self
+
+    _taken = TAKES_STAGE
 
     def _check_only_given(self) -> None:
         """Refuse tables of gears that are sized."""

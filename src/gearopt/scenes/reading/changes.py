@@ -49,7 +49,7 @@ def changed(content: Mapping[str, Any], changes: Mapping[str, Any], file: str) -
     places = [(key, _place(key, file), value) for key, value in changes.items()]
     for key, place, value in places:
         if value is not None:
-            _set(copy, place, as_written(value), key, file)
+            set_at(copy, place, as_written(value), key, file)
     gone = [(key, place) for key, place, value in places if value is None]
     holders = [(_holder(copy, place, key, file), place[-1]) for key, place in gone]
     for here, step in sorted(holders, key=lambda one: str(one[1]).zfill(6), reverse=True):
@@ -67,7 +67,7 @@ def _place(key: Any, file: str) -> Place:
     return tuple(int(index) - 1 if index else name for name, index in re.findall(_STEP, text))
 
 
-def _set(content: dict[str, Any], place: Place, value: Any, key: str, file: str) -> None:
+def set_at(content: dict[str, Any], place: Place, value: Any, key: str, file: str) -> None:
     """Put a value at a place; tables that are not there are begun, and lists go on by one."""
     here: Any = content
     for k, step in enumerate(place):

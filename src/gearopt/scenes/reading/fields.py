@@ -48,9 +48,13 @@ class Table(BaseModel):
 
 @dataclass(frozen=True)
 class Opened:
-    """The files that are being read: each names the next one as its input; the last is this one."""
+    """The files that are being read: each names the next one as its input; the last is this one.
+
+    ask: the `Ask` by which a file is solved whose gears this one takes; None: by default.
+    """
 
     files: tuple[Path, ...]
+    ask: Any = None
 
 
 @dataclass(frozen=True)

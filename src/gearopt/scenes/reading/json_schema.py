@@ -30,11 +30,28 @@ def json_schema(kind: str) -> dict[str, Any]:
         },
     }
     schema["properties"] = head | schema["properties"]
+    if any("from" in table.get("properties", ()) for table in schema["$defs"].values()):
+        _needed_alone(schema)
     schema["required"] = ["gearopt", "kind", *schema.get("required", [])]
     schema["patternProperties"] = {"^x-": {}}
     schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
     schema["title"] = f"gearopt {kind}"
     return schema
+
+
+def _needed_alone(schema: dict[str, Any]) -> None:
+    """Ask for tables, and for their keys, of files alone whose gears are not another one's."""
+    words, names = ("required", "oneOf"), schema.pop("required")
+    refs = {name: schema["properties"][name]["$ref"].rpartition("/")[2] for name in names}
+    held = {
+        ref: {w: v for w in words if (v := schema["$defs"][ref].pop(w, None))}
+        for ref in {*refs.values()}
+    }
+    schema["if"] = {"required": ["gears"], "properties": {"gears": {"required": ["from"]}}}
+    inside = {name: held[ref] for name, ref in refs.items()}
+    schema["else"] = {"required": names, "properties": inside}
+    if "anyOf" in schema:
+        schema["else"]["anyOf"] = schema.pop("anyOf")
 
 
 def reference(kind: str) -> str:

@@ -4,7 +4,7 @@ import hashlib
 import re
 import tomllib
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import field, replace
 from decimal import Decimal, InvalidOperation
 from difflib import get_close_matches
 from importlib import import_module
@@ -20,6 +20,7 @@ from gearopt.errors import Fix, SceneError, SolveError, together
 from gearopt.frozen import dataclass
 from gearopt.scenes.kind import Kind
 from gearopt.scenes.reading.absent import absent_kind
+from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.called import kind_called
 from gearopt.scenes.reading.changes import as_written, changed
 from gearopt.scenes.reading.fields import Opened
@@ -109,12 +110,11 @@ def _likely(content: dict[str, Any], called: str | None) -> str:
 def load(
     what: str | Path | Mapping[str, Any],
     changes: Mapping[str, Any] | None = None,
-    before: tuple[Path, ...] = (),
+    ask: Ask | None = None,
 ) -> Loaded:
     """Read a problem file, or its tables; SceneError says where it is wrong and what to write.
 
-    changes: other values by key, see `changes.changed`. before: the files by way of which it was
-    named as an input.
+    changes: other values by key, see `changes.changed`. ask: as of `Opened`.
     """
     changes = changes or {}
     if isinstance(what, Mapping):
@@ -132,7 +132,7 @@ def load(
         asked, edits = _tables_read(content), bare(as_written(changes))
     except RecursionError:
         raise _too_deep(name) from None
-    kind, scene = _scene(content, name, (*before, folder.resolve()))
+    kind, scene = _scene(content, name, Opened((folder.resolve(),), ask))
     return Loaded(scene, kind, asked, file, digest, edits)
 
 
@@ -196,16 +196,20 @@ def _name_a_file(path: str | Path) -> str:
     return f"{suggestion}`gearopt new drive` prints a file to start from"
 
 
-def read(data: bytes, file: str = "<text>", before: tuple[Path, ...] = ()) -> tuple[str, BaseModel]:
-    """Return the kind and scene of the bytes of a problem file; SceneError names all mistakes.
+def read(
+    data: bytes | Mapping[str, Any], file: str = "<text>", by: Opened | None = None
+) -> tuple[str, BaseModel]:
+    """Return the kind and scene of a problem file; SceneError names all mistakes.
 
-    file: its name in messages. before: the files by way of which this one was named as an input.
-    What depends on several tables is checked once each is right.
+    data: its bytes, or its tables. file: its name in messages. by: the files by way of which this
+    one was named as an input. What depends on several tables is checked once each is right.
     """
-    return _scene(_parse(data, file), file, (*before, Path(file).resolve()))
+    by = by or Opened(())
+    content = _parse(data, file) if isinstance(data, bytes) else _from_python(data, file)
+    return _scene(content, file, replace(by, files=(*by.files, Path(file).resolve())))
 
 
-def _scene(content: dict[str, Any], file: str, opened: tuple[Path, ...]) -> tuple[str, BaseModel]:
+def _scene(content: dict[str, Any], file: str, opened: Opened) -> tuple[str, BaseModel]:
     """Return the kind and scene of the tables of a file; opened: the files being read."""
     if not content:
         remedy = "Start from what `gearopt new drive` prints"
@@ -215,7 +219,7 @@ def _scene(content: dict[str, Any], file: str, opened: tuple[Path, ...]) -> tupl
     if kind:
         model: type[BaseModel] = kind_named(kind).scene
         try:
-            scene = model.model_validate(content, context=Opened(opened))
+            scene = model.model_validate(content, context=opened)
         except ValidationError as wrong:
             errors += translate(file, kind, model, content, wrong)
     if errors:

@@ -107,7 +107,7 @@ def _mistake(
     context: dict[str, Any] = error.get("ctx", {})
     if error["type"] == "extra_forbidden":
         return _unknown(file, kind, model, content, place)
-    value, present = _lookup(content, place)
+    value, present = lookup(content, place)
     key = dotted(place)
     if error["type"] == "missing":
         return wrong_value(file, key, None, "is missing", example_of(model, place), sample=True)
@@ -137,7 +137,7 @@ def _no_table(
     """Return the error for another value where a table, or a list of tables, belongs."""
     name, (value, _) = (
         next(p for p in reversed(place) if isinstance(p, str)),
-        _lookup(content, place),
+        lookup(content, place),
     )
     if meant := _near_name(model, content, place):  # planet = 3 for planets = 3
         above, key = _title(dotted(place[:-1])) if place[:-1] else "the file", dotted(place)
@@ -163,7 +163,7 @@ def _unknown(
     place: tuple[Any, ...],
 ) -> SceneError:
     """Return the error for an unknown key: what it may mean, where it belongs, or what is known."""
-    value, _ = _lookup(content, place)
+    value, _ = lookup(content, place)
     name, key, shown = str(place[-1]), dotted(place), cut(dotted(place), 80)
     above = next((part for part in reversed(place[:-1]) if isinstance(part, str)), "")
     there = called(kind, f"{above}.{name}")
@@ -240,8 +240,8 @@ def _near_name(
 
     taken: whether the name is one that the table has already, or one that it lacks.
     """
-    value, present = _lookup(content, place)
-    parent, _ = _lookup(content, place[:-1])
+    value, present = lookup(content, place)
+    parent, _ = lookup(content, place[:-1])
     fields = _table_at(model, place[:-1]).model_fields
     fitting = [f for f in fields if _fits(value, table_of(fields[f].annotation))]
     if not present or isinstance(place[-1], int) or place[-1] in fitting:
@@ -271,7 +271,8 @@ def _is_many(model: type[BaseModel], place: tuple[Any, ...]) -> bool:
     return get_origin(info.annotation) is tuple
 
 
-def _lookup(content: Any, place: tuple[Any, ...]) -> tuple[Any, bool]:
+def lookup(content: Any, place: tuple[Any, ...]) -> tuple[Any, bool]:
+    """Value at a place of the content of a file, and whether there is one."""
     for part in place:
         if isinstance(content, dict) and part in content:
             content = content[part]
@@ -310,7 +311,7 @@ def example_of(model: type[BaseModel], place: tuple[Any, ...]) -> Any:
     kind = import_module(".".join(model.__module__.split(".")[:3])).KIND  # of gearopt.scenes.NAME
     texts = [example.text for example in kind.examples.values()]
     at = tuple(0 if isinstance(part, int) else part for part in place)
-    each = (_lookup(tomllib.loads(text, parse_float=Decimal), at) for text in texts)
+    each = (lookup(tomllib.loads(text, parse_float=Decimal), at) for text in texts)
     shown, present = next((one for one in each if one[1]), (None, False))
     required = {
         n: example_of(table, (n,)) for n, f in table.model_fields.items() if f.is_required()

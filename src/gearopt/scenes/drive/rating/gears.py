@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.errors import SolveError
+from gearopt.formulations.drive.design import drive_design
 from gearopt.formulations.strength.standard import Load
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair
@@ -17,6 +18,7 @@ from gearopt.scenes.drive.tables.drive import Gears, StageTable
 from gearopt.scenes.drive.tables.rating import GearTable, LoadTable, RatingTable
 from gearopt.scenes.drive.toothings import toothing
 from gearopt.scenes.parts import Duty
+from gearopt.scenes.reading.ask import Ask
 
 HOUR = 3600.0  # s
 Tables = tuple[GearTable, GearTable]  # of pinion and wheel
@@ -64,7 +66,24 @@ def given_pairs(stages: Sequence[StageTable], gears: Gears) -> tuple[GearPair, .
             unit = teeth_of.pair(module, *teeth, 1.0)
             width = float(span[0]) * float(unit.pinion.reference_diameter)
         pairs.append(teeth_of.pair(module, *teeth, width))
-    return tuple(pairs)
+    return _as_taken(pairs, gears)
+
+
+def _as_taken(pairs: Sequence[GearPair], gears: Gears) -> tuple[GearPair, ...]:
+    """Pairs whose bodies are those of the file that they are taken from, if they are."""
+    source, number = map(vars(gears).get, ("from", "stage"))
+    if source is None:
+        return tuple(pairs)
+    stages = drive_design(source.result(Ask()).design).stages
+    chosen = stages if number is None else stages[number - 1 :]
+    made = []
+    for pair, stage in zip(pairs, chosen, strict=False):
+        rows = zip(pair.gears, stage.bodies, strict=True)
+        first, second = (
+            g if d == g.reference_diameter else replace(g, body_diameter=d) for g, d in rows
+        )
+        made.append(GearPair(first, second, pair.working_distance))
+    return tuple(made)
 
 
 def blanks(tables: Tables, pair: GearPair) -> Blanks:

@@ -8,10 +8,11 @@ from typing import Any
 from gearopt.errors import CertificateError, SolveError
 from gearopt.formulations.drive.design import DriveDesign, drive_design, of_pairs
 from gearopt.formulations.drive.rating import DriveRating, MeshRating, ShaftRating
+from gearopt.formulations.drive.train import STEEL_DENSITY
 from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import typed, untyped
 from gearopt.physics.blanks import Blank
-from gearopt.physics.gears import GearPair
+from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.geometry.flaws import Flaw
 from gearopt.physics.loads import torque
 from gearopt.physics.shaft_forces import hands
@@ -38,6 +39,7 @@ from gearopt.scenes.drive.rating.gears import (
     required_hours,
 )
 from gearopt.scenes.drive.rating.geometry import tooth_geometry
+from gearopt.scenes.drive.rating.materials import choices
 from gearopt.scenes.drive.rating.mesh import Materials, Mesh
 from gearopt.scenes.drive.rating.options import (
     SECOND,
@@ -210,7 +212,24 @@ def given_design(
         drivers(scene),
         idlers(scene.stage),
     )
-    return design, bodies
+    return _of_materials(scene, design), bodies
+
+
+def _of_materials(scene: Scene, design: DriveDesign) -> DriveDesign:
+    """A drive of given gears with the names and densities of their materials."""
+    usual, stages = scene.objective.density, []
+    for own, stage in zip(scene.stage_tables, design.stages, strict=True):
+        values: dict[str, Any] = {}
+        for member in MEMBERS:
+            material = choices(getattr(own, member), scene.gears, scene.material)[0][1]
+            dense = material.density.value if material and material.density else None
+            mass = getattr(stage, f"{member}_mass_kg")
+            before = usual.value if usual else STEEL_DENSITY
+            values[f"{member}_mass_kg"] = mass * (dense / before if dense else 1.0)
+            values[f"{member}_material"] = material.name if material else ""
+        total = sum(values[f"{member}_mass_kg"] for member in MEMBERS)
+        stages.append(replace(stage, mass_kg=total, **values))
+    return replace(design, stages=tuple(stages), mass_kg=sum(one.mass_kg for one in stages))
 
 
 def off_ratio(scene: Scene, design: DriveDesign) -> list[str]:

@@ -27,6 +27,7 @@ from gearopt.scenes.reading.fields import (
     truth,
     whole,
 )
+from gearopt.scenes.reading.linked_files import takes_gears
 from gearopt.scenes.reading.lists import several, span
 from gearopt.scenes.reading.module_series import MODULE, SERIES, series
 from gearopt.units import Quantity
@@ -124,6 +125,7 @@ def limited_by(law: Law) -> Callable[[type[T]], type[T]]:
     return limited
 
 
+@takes_gears
 class Gears(GearKeys):
     """What all stages share, and all gears that have nothing else of their own."""
 
