@@ -12,6 +12,7 @@ from pathlib import Path
 import agma
 import commands
 import gallery
+import in_mesh
 import iso6336
 import notebook
 import pictures
@@ -30,6 +31,7 @@ PAGES = {
     "iso6336.md": iso6336.page,
     "python.md": python_api.page,
     "rate.md": rate_page.page,
+    "tooth_stiffness.md": in_mesh.page,
 }
 
 
