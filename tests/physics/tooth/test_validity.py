@@ -9,9 +9,13 @@ from gearopt.physics.gears import GearPair
 from gearopt.physics.tooth.elastic import ElasticPair
 from gearopt.physics.tooth.foundation import ring_torsion
 from gearopt.physics.tooth.ladder import LEVELS, RINGED, USUAL
+from gearopt.physics.tooth.measured import IN_MESH
 from gearopt.physics.tooth.validity import (
     cheapest,
+    cheapest_in_mesh,
     doubts,
+    errors_in_mesh,
+    finest,
     refused,
     unsupported,
     usual_level,
@@ -42,6 +46,36 @@ def test_bores_for_which_the_fit_means_nothing():
         assert least < softer[0] / softer[1] < most and usual_level(pair) == RINGED
         assert bool(refused(pair, USUAL)) == (ratio > 15.0) and not refused(pair, RINGED)
     assert ring_torsion(pair) > 0.9 * softer[1] and usual_level(elastic("reference")) == USUAL
+
+
+def test_no_model_is_known_beyond_fifty_bores():
+    """A bore of a hundredth of a millimetre turns so far that metres came out."""
+    pair = elastic("reference").pair
+    for ratio in (51.0, 6750.0):
+        for level in LEVELS:
+            (said,) = refused(ElasticPair(pair, (67.5 / ratio, 50.0)), level)
+            assert f"{ratio:.4g} times its bore" in said and "Write a bore of 1.35 mm" in said
+    assert not refused(ElasticPair(pair, (67.5 / 49.9, 50.0)), RINGED)
+
+
+def test_the_cheapest_models_in_mesh_and_the_finest(monkeypatch):
+    """Without finite elements the finest is the analytic one that was least off."""
+    pair, thin = elastic("reference"), replace(elastic("reference"), bores=(60.0, 50.0))
+    exact = "finite elements", "finite elements"
+    assert cheapest_in_mesh(pair, 0.01) == exact == cheapest_in_mesh(thin, 0.5) == finest(pair)
+    for error in (0.15, 0.3, 1.0):
+        level, coupling = names = cheapest_in_mesh(pair, error)
+        assert LEVELS[level].worst <= error
+        assert max(map(abs, IN_MESH[names].peak_to_peak)) <= error
+        assert (coupling == "finite elements") == (error == 0.15)
+    assert errors_in_mesh(pair, USUAL, "given") is None is errors_in_mesh(thin, USUAL, "none")
+    monkeypatch.setattr("gearopt.physics.tooth.validity.find_spec", lambda name: None)
+    worst = {
+        max(map(abs, known.peak_to_peak)): names
+        for names, known in IN_MESH.items()
+        if "finite elements" not in names
+    }
+    assert finest(pair) == worst[min(worst)] and finest(thin) == (USUAL, "ring torsion")
 
 
 def test_wide_roots_and_planes():

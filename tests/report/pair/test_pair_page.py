@@ -4,10 +4,12 @@ import csv
 import io
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from rich.console import Console
 
+import gearopt
 from gearopt.physics.gears import Gear, GearPair
 from gearopt.report.kinds.pair import PAGES, contact_of, tiles
 from gearopt.report.kinds.pair.words import answers, graded, of_duty
@@ -42,6 +44,23 @@ def test_the_terminal_says_the_load_the_motion_and_the_stiffness(solved):
     assert "c_γα of ISO 6336-1 [N/(mm µm)] 20.128 20.128" in flat
     ratio = solved("reference_pair").design["stages"][0]["transverse_contact_ratio"]
     assert f"transverse contact ratio ε_α {ratio:.5g}" in flat
+
+
+def test_the_measured_range_stands_beside_the_transmission_error(solved):
+    """Least and largest of the pairs that `gearopt bench levels` keeps; a number has none."""
+    kept = Path(__file__).parents[2] / "bench" / "levels.csv"
+    with kept.open(encoding="utf-8", newline="") as text:
+        names = "profile + Sainsot", "ring torsion"
+        rows = [r for r in csv.DictReader(text) if (r["level"], r["coupling"]) == names]
+    low, *_, high = sorted(round(float(row["peak_to_peak"])) for row in rows)
+    said = f"measured on {len(rows)} random pairs: {low} to {high} % above finite elements"
+    file = Path(__file__).parents[3] / "src/gearopt/scenes/pair/examples/pair.toml"
+    result = gearopt.solve(file)
+    flat = " ".join(printed(result).split())
+    assert flat.count(said) == 2  # in the first lines, and where it is told how sure that is
+    assert any(said in tile.remark for tile in tiles(result, METRIC))
+    flat = " ".join(printed(solved("reference_pair")).split())
+    assert "measured on" not in flat and "no error has been measured here" in flat
 
 
 @pytest.mark.parametrize("measures", [METRIC, INCH])

@@ -29,8 +29,12 @@ def test_the_relief_is_proven_and_beats_what_was_published(solved):
     assert result.status == "optimal" and result.objective["name"] == "peak_to_peak"
     assert result.objective["unit"] == "mm"
     assert 1e3 * result.value < 1.2373 and result.value - result.bound <= 1e-6 * result.value
-    assert "proven optimal (at 99 positions of the gears)" in repr(result).splitlines()[0]
+    assert (
+        "proven optimal (under profile + Sainsot, at 99 positions" in repr(result).splitlines()[0]
+    )
     relief, contact = result.design["relief"], result.design["contact"]
+    page = (PROBLEMS.parent / "docs" / "pair.md").read_text(encoding="utf-8")
+    assert f"{1e3 * relief['judged']['value']:.3f} µm of these flanks" in page
     worst = max(load["peak_to_peak_mm"] for load in relief["at"] if load["load"] <= 1.0)
     assert worst == pytest.approx(result.value, rel=1e-12)
     assert [load["load"] for load in relief["at"]] == [0.6, 1.0, 1.25]  # the last is shown only
@@ -72,6 +76,44 @@ def test_a_relief_that_is_given_is_evaluated():
     assert result.status == "evaluated" and not result.parts
     assert 1e3 * result.value == pytest.approx(0.888, abs=0.06)
     assert result.design["relief"]["pinion"]["amount_mm"] == pytest.approx(0.01134)
+
+
+UNNAMED = {k: v for k, v in COARSE.items() if k != "sharing"} | {"sharing": {"positions": 24}}
+
+
+def test_without_finite_elements_it_is_said_how_to_install_them(monkeypatch):
+    monkeypatch.setattr("gearopt.physics.tooth.validity.find_spec", lambda name: None)
+    result = gearopt.solve(UNNAMED)
+    relief = result.design["relief"]
+    assert result.status == "optimal" and "judged" not in relief
+    assert (relief["level"], relief["coupling"]) == (
+        "profile + Sainsot + linear Hertz",
+        "ring torsion",
+    )
+    assert relief["in_mesh"] == result.design["contact"]["in_mesh"]
+    assert "pip install 'gearopt[fem]'" in relief["unjudged"]
+    assert "not judged by finite elements" in " ".join(str(result).split())
+
+
+@pytest.mark.slow
+def test_a_relief_is_judged_by_finite_elements_and_chosen_by_them():
+    """um, measured by a user: by the usual model, the same flanks judged, the least of all."""
+    tables = {k: v for k, v in FILE.items() if k != "sharing"}
+    tables["duty"] = {"power": "20 kW", "input_speed": "955 rpm"}
+    named = gearopt.solve(tables | {"sharing": {"level": "profile + Sainsot"}})
+    relief, best = named.design["relief"], gearopt.solve(tables)
+    found = named.value, relief["judged"]["value"], best.value
+    assert [1e3 * value for value in found] == pytest.approx((1.442, 2.316, 1.127), abs=6e-4)
+    assert named.proof["scope"].startswith("under profile + Sainsot, at")
+    assert best.proof["scope"].startswith("under finite elements, at")
+    assert (
+        "judged" not in best.design["relief"]
+        and best.design["relief"]["level"] == "finite elements"
+    )
+    said = " ".join(str(named).split())
+    assert "1.442 µm" in said and "the same flanks by finite elements: 2.316 µm" in said
+    low, _, high = (100.0 * value for value in relief["in_mesh"]["penalty"])
+    assert f"{low:.0f} to {high:.0f} % above their least" in " ".join(named.to_html().split())
 
 
 @pytest.mark.slow

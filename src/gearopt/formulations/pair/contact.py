@@ -18,6 +18,7 @@ from gearopt.physics.geometry.contact import ContactPath, diameters_at
 from gearopt.physics.mesh_cycle import break_points, cycle
 from gearopt.physics.tooth.elastic import ElasticPair
 from gearopt.physics.tooth.ladder import LEVELS
+from gearopt.physics.tooth.validity import errors_in_mesh
 
 DEAR = 1000.0  # us a position: of dearer models a few positions are computed, others interpolated
 NODES = 33  # of those: the stiffness between them is off by less than 2e-3 (finite elements)
@@ -114,6 +115,7 @@ def contact(
         travel_mm=column(made.mesh.cycle.travels * path.base_pitch),
         loads=at_loads(made, made.mesh.separations(NO_RELIEF, NO_RELIEF)),
         validity=tuple(validity),
+        in_mesh=errors_in_mesh(made.elastic, made.level, coupling),
     )
 
 

@@ -7,6 +7,7 @@ from typing import Annotated
 
 from gearopt.frozen import dataclass
 from gearopt.optimise.typed import Shown
+from gearopt.physics.tooth.measured import Errors
 
 Columns = tuple[float, ...]
 
@@ -87,11 +88,11 @@ class ElasticTeeth:
 class PairContact(ElasticTeeth):
     """The contact of a spur pair.
 
-    path: columns along the path of contact from SAP to EAP,
-    both sides of points where pairs come and go. rule_relief: what off the tips of pinion and wheel
-    lets pairs come and go without load at the duty's torque, by rule. travel_mm: of the pinion's
-    base circle over one base pitch, 0 where a pair comes into contact. validity: sentences on what
-    models do not cover.
+    path: columns along the path of contact from SAP to EAP, both sides of points where pairs come
+    and go. rule_relief: what off the tips of pinion and wheel lets pairs come and go without load
+    at the duty's torque, by rule. in_mesh: errors of level and coupling together, where they are
+    known. travel_mm: of the pinion's base circle over one base pitch, 0 where a pair comes into
+    contact. validity: sentences on what models do not cover.
     """
 
     rule_relief_mm: tuple[float, float]
@@ -105,6 +106,7 @@ class PairContact(ElasticTeeth):
     travel_mm: Columns
     loads: tuple[ContactLoad, ...]
     validity: tuple[str, ...] = ()
+    in_mesh: Errors | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,6 +164,20 @@ class MadeRelief:
 
 
 @dataclass(frozen=True, kw_only=True)
+class JudgedRelief:
+    """The same flanks by the finest level, beside the one under which they were chosen.
+
+    value: of what is minimised, without_relief: without any; peak_to_peak: at every load the relief
+    is made for.
+    """
+
+    level: str
+    value: float
+    without_relief: float
+    peak_to_peak_mm: Columns
+
+
+@dataclass(frozen=True, kw_only=True)
 class PairRelief:
     """The relief of a spur pair.
 
@@ -169,7 +185,9 @@ class PairRelief:
     wheel_removed_mm: columns beside those of the path of contact. at: what happens at every load of
     the contact with it. rows: rules beside it, and no relief. break_even: load below
     which the gears run more evenly without it, None where there is none. finer_mm: peak-to-peak at
-    every load on ten times as many positions. made: within tolerances.
+    every load on ten times as many positions. made: within tolerances. level, coupling: under which
+    it is chosen, and what is said of it holds; judged: by the finest level, None where that is the
+    same or unjudged says why not; in_mesh: measured errors of level and coupling, where known.
     """
 
     minimise: str
@@ -183,3 +201,8 @@ class PairRelief:
     break_even: float | None = None
     finer_mm: Columns = ()
     made: MadeRelief | None = None
+    level: str = ""
+    coupling: str = ""
+    judged: JudgedRelief | None = None
+    unjudged: str = ""
+    in_mesh: Errors | None = None

@@ -1,4 +1,6 @@
-"""Limits of the models of elastic teeth, in sentences; and the cheapest that suits."""
+"""Limits of the models of elastic teeth, in sentences; the cheapest that suits, and the finest."""
+
+from importlib.util import find_spec
 
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.geometry.flaws import THIN_TIP
@@ -6,6 +8,7 @@ from gearopt.physics.geometry.tooth import tip_thickness
 from gearopt.physics.tooth.elastic import ElasticGear, ElasticPair
 from gearopt.physics.tooth.foundation import SAINSOT_BORE_RATIOS, SAINSOT_HALF_ANGLES
 from gearopt.physics.tooth.ladder import LEVELS, RINGED, USUAL
+from gearopt.physics.tooth.measured import IN_MESH, Errors
 from gearopt.physics.tooth.trapezoid import is_waisted
 
 # modules of face width from which plane strain describes teeth better (an assumption)
@@ -14,7 +17,8 @@ EXACT = "finite elements"
 MEASURED = 1.4, 5.0  # bore ratios of the pairs on which `LEVELS` records errors
 WIDEST_ROOT = 0.17  # half angle of a root [rad] up to which they do
 WIDEST_SAINSOT = 15.0  # bore ratio beyond which Sainsot's body, 2 times too soft at 50, is refused
-ANY_BORE = ("half plane and ring", "elements")  # bodies that larger ones suit as well: up to 50
+ANY_BORE = ("half plane and ring", "elements")  # bodies that larger ones suit as well
+WIDEST = 50.0  # bore ratio up to which these are known, and beyond which every level is refused
 
 
 def usual_plane(pair: GearPair) -> str:
@@ -60,8 +64,15 @@ def unsupported(elastic: ElasticPair, level: str) -> tuple[str, ...]:
 
 
 def refused(elastic: ElasticPair, level: str) -> tuple[str, ...]:
-    """Return why a level says nothing of a pair, in sentences: its trapezoid, or Sainsot's body."""
+    """Return why a level says nothing of a pair, in sentences: trapezoid, Sainsot's body, bores."""
     model, bores = LEVELS[level], [member.bore_ratio for member in elastic.members]
+    if max(bores) > WIDEST:
+        name = MEMBERS[bores.index(max(bores))]
+        least = 2.0 * elastic.members[bores.index(max(bores))].root_radius / WIDEST
+        return (
+            f"The root circle of the {name} is {max(bores):.4g} times its bore: no model of teeth "
+            f"is known beyond {WIDEST:g}. Write a bore of {least:.3g} mm or more, or none",
+        )
     far = model.body == "Sainsot" and max(bores) > WIDEST_SAINSOT
     return unsupported(elastic, level) if far or model.tooth == "trapezoid" else ()
 
@@ -109,6 +120,58 @@ def cheapest(elastic: ElasticPair, error: float) -> str:
         if level.worst <= error and _measured(elastic, name) and not unsupported(elastic, name)
     ]
     return min(suited)[2] if suited else EXACT
+
+
+def installed() -> bool:
+    """Return whether finite elements can be computed here: they are an extra."""
+    return find_spec("skfem") is not None
+
+
+def errors_in_mesh(elastic: ElasticPair, level: str, coupling: str) -> Errors | None:
+    """Return how far a level with a coupling was off in mesh; None where that is not known."""
+    ratios = [member.bore_ratio for member in elastic.members]
+    known = MEASURED[0] <= min(ratios) and max(ratios) <= MEASURED[1]
+    return IN_MESH.get((level, coupling)) if known else None
+
+
+def cheapest_in_mesh(elastic: ElasticPair, error: float) -> tuple[str, str]:
+    """Return the cheapest level and coupling known to within an error: of stiffness and in mesh.
+
+    In mesh: of the peak-to-peak transmission error, as measured on random pairs. Finite elements
+    of both where no other model is known to suit.
+    """
+    suited = [
+        (LEVELS[level].cost + LEVELS[EXACT].cost * (coupling == EXACT), worst, level, coupling)
+        for (level, coupling), worst in _worst_in_mesh(elastic).items()
+        if max(worst, LEVELS[level].worst) <= error
+    ]
+    return min(suited)[2:] if suited else (EXACT, EXACT)
+
+
+def finest(elastic: ElasticPair) -> tuple[str, str]:
+    """Return the level and coupling that are nearest: finite elements, where they are installed.
+
+    Else the analytic ones whose transmission error was least off, where that is known.
+    """
+    if installed():
+        return EXACT, EXACT
+    known = _worst_in_mesh(elastic)
+    rows = [(worst, *names) for names, worst in known.items() if EXACT not in names]
+    return min(rows)[1:] if rows else (usual_level(elastic), usual_coupling(usual_level(elastic)))
+
+
+def usual_coupling(level: str) -> str:
+    """Return the coupling of neighbours that goes with a level where the file names none."""
+    return EXACT if level == EXACT else "ring torsion"
+
+
+def _worst_in_mesh(elastic: ElasticPair) -> dict[tuple[str, str], float]:
+    """Largest errors of the peak to peak by models that suit a pair, where they are known."""
+    return {
+        names: max(abs(errors.peak_to_peak[0]), abs(errors.peak_to_peak[2]))
+        for names in IN_MESH
+        if (errors := errors_in_mesh(elastic, *names)) and not unsupported(elastic, names[0])
+    }
 
 
 def _measured(elastic: ElasticPair, level: str) -> bool:

@@ -20,7 +20,18 @@ from gearopt.physics.tooth.elastic import POISSON, STEEL, ElasticPair
 from gearopt.physics.tooth.foundation import SAINSOT_BORE_RATIOS
 from gearopt.physics.tooth.ladder import COUPLINGS, LEVELS, USUAL
 from gearopt.physics.tooth.slices import normal_section
-from gearopt.physics.tooth.validity import cheapest, doubts, refused, usual_level, usual_plane
+from gearopt.physics.tooth.validity import (
+    EXACT,
+    cheapest,
+    cheapest_in_mesh,
+    doubts,
+    finest,
+    installed,
+    refused,
+    usual_coupling,
+    usual_level,
+    usual_plane,
+)
 from gearopt.scenes.drive.rating.gears import Tables, blanks, gear_tables
 from gearopt.scenes.pair.scene import Scene
 from gearopt.units import Quantity
@@ -34,8 +45,7 @@ NEAR_WHOLE = 0.02  # of a contact ratio to a whole number, where TE is discontin
 
 def contact_of(scene: Scene, made: PairMesh, materials: Materials) -> PairContact:
     """Return the contact of a pair of a file in mesh; materials: as of `mesh_of`."""
-    coupling = scene.sharing.coupling
-    name = "given" if isinstance(coupling, Quantity) else coupling
+    name = coupling_name(models_of(scene, made.elastic)[1])
     pair = made.elastic.pair
     beyond = doubts_of(scene, pair, made.elastic, made.level, materials)
     iso = stiffnesses_by_iso(scene, pair, made.elastic, materials)
@@ -48,10 +58,9 @@ def doubts_of(
     scene: Scene, pair: GearPair, elastic: ElasticPair, level: str, materials: Materials
 ) -> tuple[str, ...]:
     """Sentences on what the models do not cover of a pair, and why the level is not the usual."""
-    coupling = scene.sharing.coupling
-    name = "given" if isinstance(coupling, Quantity) else coupling
+    name = coupling_name(models_of(scene, elastic)[1])
     return (
-        *_chosen(scene, level),
+        *_chosen(scene, elastic, level),
         *_webs(scene, pair, materials),
         *_validity(pair, elastic, level, name),
     )
@@ -108,16 +117,17 @@ def teeth_of(
         raise SolveError(f"there is no contact to compute: {fatal[0][0].lower()}{fatal[0][1:-1]}")
     asked, relief = scene.sharing, scene.relief
     elastic = elastic_pair(scene, pair, materials)
-    coupling = asked.coupling
     loads = sorted({float(load) for load in (*asked.loads, *((relief and relief.loads) or ()))})
-    level = level_of(scene, elastic)
+    level, coupling = models_of(scene, elastic)
     if excluded := refused(elastic, level):
         raise SolveError(f'[sharing] level = "{level}" does not suit the gears. {excluded[0]}')
-    if seconds is not None and seconds < LEAST_SECONDS and LEVELS[level].cost > DEAR:
-        raise TimeoutError(
-            f'level = "{level}" in [sharing] takes a second or two: allow more time, or write '
-            "another level"
-        )
+    if seconds is not None and seconds < LEAST_SECONDS:
+        dear = "level" if LEVELS[level].cost > DEAR else "coupling" if coupling == EXACT else ""
+        if dear:
+            raise TimeoutError(
+                f'{dear} "{EXACT}" takes a second or two: allow more time, or write another {dear} '
+                "in [sharing]"
+            )
     coupled = coupling.value if isinstance(coupling, Quantity) else COUPLINGS[coupling](elastic)
     return Teeth(elastic, level, coupled, tuple(loads))
 
@@ -152,12 +162,30 @@ def _usual_suits(made: PairMesh) -> bool:
     return made.least_compliance(USUAL) > made.mesh.coupling
 
 
-def level_of(scene: Scene, elastic: ElasticPair) -> str:
-    """Return the model of the teeth's compliance that a file asks for, or whose error it bears."""
+def models_of(scene: Scene, elastic: ElasticPair) -> tuple[str, str | Quantity]:
+    """Return level and coupling that a file asks for, or whose errors it bears.
+
+    Of a relief, where it says nothing on either, the finest ones: what is best by a model that is
+    off is not the best of the gears. Of slices across the face, whose errors are known with it, the
+    coupling by finite elements where they are installed.
+    """
     asked = scene.sharing
+    in_slices = scene.helical or scene.flank is not None
+    if asked.error is not None and asked.coupling is None and not in_slices:
+        return cheapest_in_mesh(elastic, float(asked.error))
     if asked.error is not None:
-        return cheapest(elastic, float(asked.error))
-    return asked.level or usual_level(elastic)
+        level = cheapest(elastic, float(asked.error))
+    elif scene.relief and not in_slices and asked.level is None and asked.coupling is None:
+        return finest(elastic)
+    else:
+        level = asked.level or usual_level(elastic)
+    usual = EXACT if in_slices and installed() else usual_coupling(level)
+    return level, usual if asked.coupling is None else asked.coupling
+
+
+def coupling_name(coupling: str | Quantity) -> str:
+    """Return what a coupling is called: a model, or given as a number."""
+    return coupling if isinstance(coupling, str) else "given"
 
 
 def elastic_pair(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> ElasticPair:
@@ -206,10 +234,10 @@ def stiffnesses_by_iso(
     return float(single), float(mesh_stiffness(single, ratio)[0])
 
 
-def _chosen(scene: Scene, level: str) -> Iterator[str]:
+def _chosen(scene: Scene, elastic: ElasticPair, level: str) -> Iterator[str]:
     """Yield why the model of the teeth is not the usual one, where the file names none."""
     asked = scene.sharing
-    if asked.level is None and asked.error is None and level != USUAL:
+    if asked.level is None and asked.error is None and level == usual_level(elastic) != USUAL:
         yield (
             f'The file names no level, and the bores are too small for "{USUAL}", whose body was '
             f"fitted to a root circle of up to {SAINSOT_BORE_RATIOS[1]:g} bores: teeth are "

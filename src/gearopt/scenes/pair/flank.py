@@ -22,7 +22,9 @@ from gearopt.physics.tooth.slices import Sliced
 from gearopt.scenes.pair.contact import (
     Materials,
     check_length,
+    coupling_name,
     doubts_of,
+    models_of,
     stiffnesses_by_iso,
     teeth_of,
     yielding,
@@ -89,19 +91,18 @@ def flank_contact_of(
     """Return the contact over the flank of a pair of a file, with the reliefs of its mesh."""
     sliced, face = mesh.sliced, mesh.face
     pair, path, elastic = sliced.pair, sliced.path, sliced.normal
-    coupling = scene.sharing.coupling
+    coupling = coupling_name(models_of(scene, elastic)[1])
     iso = stiffnesses_by_iso(scene, pair, elastic, materials)
     loads = flank_loads(mesh)
     beyond = doubts_of(scene, pair, elastic, level, materials)
     most = max(load.largest_contact_stress_MPa for load in loads)
     held = [float(relief.amount) for relief in mesh.reliefs]
     long = [float(relief.length) if relief.amount else 0.0 for relief in mesh.reliefs]
-    coupled = ("given" if isinstance(coupling, Quantity) else coupling), sliced.coupling
     first, second = (
         float(bore * gear.root_diameter / virtual.root_diameter)
         for bore, virtual, gear in zip(elastic.bores, elastic.pair.gears, pair.gears, strict=True)
     )
-    teeth = teeth_columns(level, elastic, path, coupled, iso)
+    teeth = teeth_columns(level, elastic, path, (coupling, sliced.coupling), iso)
     return FlankContact(
         **(teeth | {"pinion_bore_mm": first, "wheel_bore_mm": second}),
         slices=face.count,

@@ -5,11 +5,11 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.formulations.pair.contact import PairMesh
-from gearopt.formulations.pair.design import PairRelief
+from gearopt.formulations.pair.contact import PairMesh, column
+from gearopt.formulations.pair.design import JudgedRelief, PairRelief
 from gearopt.formulations.pair.relief import parametric
 from gearopt.formulations.pair.relief.free_form import Profile, Shape, free_problem
-from gearopt.formulations.pair.relief.meshing import Mesh, Relief
+from gearopt.formulations.pair.relief.meshing import NO_RELIEF, Mesh, Relief
 from gearopt.formulations.pair.relief.parametric import Ranges
 from gearopt.formulations.pair.relief.relief_tolerance import Tolerance, robust_problem
 from gearopt.formulations.pair.relief_map import Removed, as_made, described
@@ -22,6 +22,9 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.solve import evaluate
 from gearopt.optimise.terms import Array, Terms, Var
 from gearopt.optimise.typed import untyped
+from gearopt.physics.tooth.ladder import COUPLINGS
+from gearopt.physics.tooth.validity import EXACT, errors_in_mesh, installed
+from gearopt.scenes.pair.contact import LEAST_SECONDS, coupling_name, models_of
 from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.scene import Scene
 from gearopt.scenes.reading.ask import Ask
@@ -34,6 +37,12 @@ ROBUST = "the worst case is annealed: without tolerance the least value is prove
 NUMBERS = ("annealing", "nsga2")  # methods that take no derivatives, which a relief has not
 UNBOUND = "without the method exact there is no bound"
 UNPROVEN = "only transmission errors have a proven search: of shares of the load there is no bound"
+ABSENT = (
+    "Finite elements, the finest level, are not installed, so that the relief is not judged by "
+    "them: pip install 'gearopt[fem]'."
+)
+HASTY = "There was no time left to judge the relief by finite elements, the finest level."
+JUDGING = 3.0  # s that a search leaves, a quarter of its time at most, for finite elements
 KEYS = {"amount": "relief.amount", "length": "relief.length"}  # of variables: their places
 
 
@@ -47,11 +56,10 @@ def relieved(scene: Scene, made: PairMesh, ask: Ask) -> tuple[Result, PairRelief
     """Return the result of the search for the best relief, and the relief that it found."""
     asked, loads = scene.relief, loads_of(scene)
     assert asked
-    mesh = made.of_loads(loads)
-    if asked.free:
-        result, removed = _free(asked, mesh, ask)
-    else:
-        result, removed = _parametric(asked, mesh, ask)
+    mesh, search = made.of_loads(loads), _free if asked.free else _parametric
+    judging = 0.0 if made.level == EXACT else min(JUDGING, 0.25 * (ask.budget.seconds or 0.0))
+    result, removed = search(asked, mesh, replace(ask, budget=ask.budget.less(judging)))
+    result = _scoped(result, made)
     if removed is None:
         return result, None
     tolerance = None if asked.tolerance is None else _tolerance(asked, mesh)
@@ -61,7 +69,43 @@ def relieved(scene: Scene, made: PairMesh, ask: Ask) -> tuple[Result, PairRelief
         watch = in_part(ask.watch, part="worst case within tolerances")
         kept = as_made(mesh, nominal, tolerance, within, ask.seed, watch)
         relief = replace(relief, made=kept)
-    return result, relief
+    left = ask.budget.seconds
+    return result, _judged(scene, made, removed, relief, left and left - result.seconds)
+
+
+def _scoped(result: Result, made: PairMesh) -> Result:
+    """Return a result whose proof names the model of the teeth that it holds under."""
+    if "scope" not in result.proof:
+        return result
+    return replace(result, proof=result.proof | {"scope": _under(made, result.proof["scope"])})
+
+
+def _under(made: PairMesh, scope: str) -> str:
+    return f"under {made.level}, {scope}"
+
+
+def _judged(
+    scene: Scene, made: PairMesh, removed: Removed, relief: PairRelief, left: float | None
+) -> PairRelief:
+    """Return a relief with the models it was chosen under, and what the finest level says of it."""
+    elastic, name = made.elastic, coupling_name(models_of(scene, made.elastic)[1])
+    known = errors_in_mesh(elastic, made.level, name)
+    relief = replace(relief, level=made.level, coupling=name, in_mesh=known)
+    if (made.level, name) == (EXACT, EXACT):
+        return relief
+    if not installed() or (left is not None and left < LEAST_SECONDS):
+        return replace(relief, unjudged=HASTY if installed() else ABSENT)
+    torque, steps = scene.duty.input_torque, scene.sharing.positions
+    fine = PairMesh.of(elastic, EXACT, torque, COUPLINGS[EXACT](elastic), steps, relief.loads).mesh
+    there = fine.criteria(removed.on(made.mesh, fine).separations(fine))
+    plain = fine.criteria(fine.separations(NO_RELIEF, NO_RELIEF))
+    judged = JudgedRelief(
+        level=EXACT,
+        value=float(parametric.objective(there, relief.minimise)),
+        without_relief=float(parametric.objective(plain, relief.minimise)),
+        peak_to_peak_mm=column(there.peak_to_peak),
+    )
+    return replace(relief, judged=judged)
 
 
 def _nominal(relief: PairRelief) -> tuple[Relief, Relief]:
@@ -264,7 +308,7 @@ def traded(scene: Scene, made: PairMesh, names: Sequence[str]) -> Tradeoff:
 
     proven = tuple(name for name in known if name.startswith(parametric.PROVEN))
     limiting = Limiting(limited, proven) if set(names) <= set(proven) else None
-    where = mesh.sampled if limiting else ""
+    where = _under(made, mesh.sampled) if limiting else ""
     return Tradeoff(_problem(asked, mesh, ranges, chosen), listed, drawn, limiting, scope=where)
 
 

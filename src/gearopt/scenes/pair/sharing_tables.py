@@ -19,22 +19,26 @@ class SharingTable(Table):
     """How the load is shared between tooth pairs."""
 
     level: Annotated[str | None, choice(*LEVELS)] = Field(
-        None, description=f"Model of the compliance of a pair of teeth; by default {USUAL}"
+        None,
+        description=f"Model of the compliance of a pair of teeth; by default {USUAL}, for a relief "
+        "finite elements where they are installed",
     )
     error: Annotated[Fraction | None, number("5 %", 0, 1, percent=True)] = Field(
         None,
-        description="Instead of level: permissible error of the stiffness, as measured against "
-        "finite elements; the cheapest model within it is taken",
+        description="Instead of level: permissible error of the stiffness and of the peak-to-peak "
+        "transmission error, as measured against finite elements; the cheapest level and coupling "
+        "within it are taken",
     )
     plane: Annotated[str | None, choice(*PLANES)] = Field(
         None,
         description="Plane state of the gears: by default strain from a face width of 6 modules "
         "on, else stress",
     )
-    coupling: Annotated[str | Quantity, COUPLING] = Field(
-        "ring torsion",
+    coupling: Annotated[str | Quantity | None, COUPLING] = Field(
+        None,
         description="Coupling of neighbouring tooth pairs, whose load deflects each other: a "
-        "model, or a number such as one from finite elements",
+        "model, or a number such as one from finite elements; by default ring torsion, with level "
+        "finite elements theirs",
     )
     loads: Annotated[tuple[Fraction, ...], LOADS] = Field(
         (Fraction(1),),

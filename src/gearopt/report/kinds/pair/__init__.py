@@ -25,7 +25,7 @@ from gearopt.report.kinds.pair.contact import (
     travel,
 )
 from gearopt.report.kinds.pair.relief import relief_of
-from gearopt.report.kinds.pair.words import answers, of_duty
+from gearopt.report.kinds.pair.words import answers, of_duty, off_in_mesh
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.section import Section, Table, Tile
 from gearopt.report.words import amount, number, share
@@ -59,12 +59,13 @@ def _contact_tiles(
     torque = f"at {share(load.load)} % of the duty's torque"
     part = f"{share(load.largest_share)} % of the normal force, {torque}"
     iso = amount(pair_contact.iso_mesh_stiffness_MPa, STIFFNESS, measures)
+    off = off_in_mesh(pair_contact.in_mesh) if pair_contact.in_mesh else ""
     return [
         Tile("largest load on a tooth", amount(load.largest_tooth_force_N, "N", measures), part),
         Tile(
             "peak to peak without relief" if relieved else "transmission error, peak to peak",
             amount(load.peak_to_peak_mm, "um", measures),
-            torque,
+            f"{torque}; {off}" if off else torque,
         ),
         Tile(
             "mean mesh stiffness",
@@ -92,6 +93,8 @@ def binding_limit(result: Result, measures: Measures = METRIC) -> str:
     force = amount(load.largest_tooth_force_N, "N", measures)
     error = amount(load.peak_to_peak_mm, "um", measures)
     words = f"one tooth carries up to {force}; the transmission error varies by {error}"
+    if pair_contact.in_mesh and load.peak_to_peak_mm:
+        words += f" ({off_in_mesh(pair_contact.in_mesh)})"
     return _with_rating(result, words, measures)
 
 

@@ -17,9 +17,11 @@ from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.physics.gears import MEMBERS, GearPair
+from gearopt.physics.tooth.measured import PAIRS
+from gearopt.physics.tooth.validity import EXACT
 from gearopt.report.drawing.sheet import SERIES_OF_MEMBERS, series
 from gearopt.report.kinds.pair.contact import Columns, columns
-from gearopt.report.kinds.pair.words import of_duty
+from gearopt.report.kinds.pair.words import between, of_duty
 from gearopt.report.measures import Measures
 from gearopt.report.plots import Figure, axis, layout, lines
 from gearopt.report.section import Cell, Section, Table, Tile, cell, percent, side_by_side
@@ -53,9 +55,17 @@ def relief_of(result: Result) -> PairRelief | None:
 
 
 def tiles(relief: PairRelief, measures: Measures) -> list[Tile]:
-    """Both amounts as key figures."""
+    """Both amounts as key figures, and what they leave by the finest level."""
     rows = (("pinion", relief.pinion), ("wheel", relief.wheel))
-    return [
+    judged = [
+        Tile(
+            f"the same flanks by {there.level}",
+            _value(relief, there.value, measures),
+            f"{_at(relief)}; {_value(relief, there.without_relief, measures)} without relief",
+        )
+        for there in ([relief.judged] if relief.judged else [])
+    ]
+    return judged + [
         Tile(
             f"relief of the {name}",
             amount(flank.amount_mm, "um", measures),
@@ -73,13 +83,54 @@ def relief_words(relief: PairRelief, measures: Measures) -> str:
         f"{_value(relief, none.value, measures)} to {_value(relief, best.value, measures)}"
         f"{_strays(relief, measures)}"
     )
-    at = f"{100.0 * relief.loads[0]:g} % of the torque"
-    if len(relief.loads) > 1:
-        at = f"the worst of {len(relief.loads)} loads"
+    also = "; not judged by finite elements" if relief.unjudged else ""
+    if judged := relief.judged:
+        also = f"; the same flanks by {judged.level}: {_value(relief, judged.value, measures)}"
     return (
         f"tip relief of {first} on the pinion and {second} on the wheel changes the "
-        f"{CRITERIA[relief.minimise]} from {values} at {at}"
+        f"{CRITERIA[relief.minimise]} from {values} {_at(relief)}{also}"
     )
+
+
+def _at(relief: PairRelief) -> str:
+    """The load that a value of the relief holds at."""
+    if len(relief.loads) > 1:
+        return f"at the worst of {len(relief.loads)} loads"
+    return f"at {100.0 * relief.loads[0]:g} % of the torque"
+
+
+def _sure(relief: PairRelief, measures: Measures) -> list[str]:
+    """Say under which model the relief was chosen, and what that is worth."""
+    if not relief.level:
+        return []
+    if relief.level == relief.coupling == EXACT:
+        return ["Values with relief hold under finite elements, the finest level of the teeth."]
+    said = [
+        f"Values with relief, and what is proven of them, hold under {relief.level}, coupling "
+        f"{relief.coupling}."
+    ]
+    if judged := relief.judged:
+        here, there, plain = (
+            _value(relief, value, measures)
+            for value in (relief.rows[-1].value, judged.value, judged.without_relief)
+        )
+        worse = ", more than without any" if judged.value > judged.without_relief else ""
+        said.append(
+            f"The same flanks judged by {judged.level}: {there}{worse}, where {relief.level} says "
+            f"{here}; without relief {plain}. For a relief that is the best by finite elements, "
+            "write no level and no coupling in [sharing]."
+        )
+    if relief.minimise == "peak_to_peak" and (known := relief.in_mesh):
+        deep, worth, cost = (
+            between(100.0 * least, 100.0 * most)
+            for least, _, most in (known.amount, known.judged, known.penalty)
+        )
+        said.append(
+            f"Measured on {PAIRS} random pairs: the amounts of the best linear relief by this "
+            f"model were {deep} those by finite elements; the peak to peak that it is said to "
+            f"leave was {worth} what these say of its flanks, which was {cost} their least."
+        )
+    return [*said, relief.unjudged] if relief.unjudged else said
 
 
 def _strays(relief: PairRelief, measures: Measures) -> str:
@@ -109,7 +160,7 @@ def answers(relief: PairRelief, measures: Measures) -> list[str]:
             f"Below {100.0 * relief.break_even:.3g} % of the torque the gears run more evenly "
             "without relief: a light load does not close the gaps that relief opens."
         )
-    words += _finer(relief, measures)
+    words += _finer(relief, measures) + _sure(relief, measures)
     return [*words, _as_made(relief.made, measures)] if relief.made else words
 
 
