@@ -166,20 +166,19 @@ def models_of(scene: Scene, elastic: ElasticPair) -> tuple[str, str | Quantity]:
     """Return level and coupling that a file asks for, or whose errors it bears.
 
     Of a relief, where it says nothing on either, the finest ones: what is best by a model that is
-    off is not the best of the gears. Of slices across the face, whose errors are known with it, the
-    coupling by finite elements where they are installed.
+    off is not the best of the gears. Of helical gears, whose errors are known with it, the coupling by
+    finite elements where they are installed.
     """
     asked = scene.sharing
-    in_slices = scene.helical or scene.flank is not None
-    if asked.error is not None and asked.coupling is None and not in_slices:
+    if asked.error is not None and asked.coupling is None and not scene.helical:
         return cheapest_in_mesh(elastic, float(asked.error))
     if asked.error is not None:
         level = cheapest(elastic, float(asked.error))
-    elif scene.relief and not in_slices and asked.level is None and asked.coupling is None:
+    elif scene.relief and not scene.helical and asked.level is None and asked.coupling is None:
         return finest(elastic)
     else:
         level = asked.level or usual_level(elastic)
-    usual = EXACT if in_slices and installed() else usual_coupling(level)
+    usual = EXACT if scene.helical and installed() else usual_coupling(level)
     return level, usual if asked.coupling is None else asked.coupling
 
 
