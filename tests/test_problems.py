@@ -39,7 +39,8 @@ KEYS = {  # of [x-expected], as the tests below read them
     "dynamics": {
         *("status", "objective", "normal_load_N", "deformation_um", "centre_distance_growth_mm"),
         *("pressure_angle_deg", "bearing_force_N", "frequencies_Hz", "unstable_percent"),
-        *("dense_maximum_um", "largest_multiplier", "parting_speeds"),
+        *("dense_maximum_um", "largest_multiplier", "parting_speeds", "rms_um", "peak_to_peak_um"),
+        *("maximum_N", "minimum_N", "dynamic_factor"),
     },
     "servo": {
         *("status", "objective", "least_factor", "report"),
@@ -279,6 +280,9 @@ def test_expected_motion(path, solved):
     told = result.design["equilibrium"] | {"objective": result.value}
     for part in ("stability", "chosen"):
         told |= result.design.get(part) or {}
+    moved = result.design.get("response", {})
+    told |= {n: moved[n] for n in ("rms_mm", "peak_to_peak_mm") if moved}
+    told |= moved.get("tooth_load", {})
     for name, printed in expected.items():
         ending = next((s for s in SI if name.endswith(s)), "")
         unit, ours = SI.get(ending, (1.0, ""))

@@ -8,6 +8,7 @@ from gearopt.optimise.typed import Shown
 Columns = tuple[float, ...]
 Rows = tuple[Columns, ...]
 Gaps = tuple[float | None, ...]
+OUT_OF_MESH = "Teeth leave mesh"  # how the first of the warnings begins where they do
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,6 +28,33 @@ class Equilibrium:
 
 
 @dataclass(frozen=True, kw_only=True)
+class ToothLoad:
+    """Load on the teeth in a motion; minimum below zero on the coast flanks.
+
+    dynamic_factor: the largest load on either flank over the normal load.
+    """
+
+    maximum_N: Annotated[float, Shown("tooth load, maximum")]
+    minimum_N: Annotated[float, Shown("tooth load, minimum")]
+    rms_N: Annotated[float, Shown("tooth load, RMS")]
+    dynamic_factor: Annotated[float, Shown("dynamic factor: maximum over normal load")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class StandardFactors:
+    """K_v of ISO 6336-1, method B, and of AGMA 2001-D04, None beyond the curve.
+
+    own: at the pair's own speed; iso, agma: at those of [speeds]. missing: why one is not told.
+    """
+
+    own_iso: float | None = None
+    own_agma: float | None = None
+    iso: Gaps = ()
+    agma: Gaps = ()
+    missing: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Response:
     """A motion in time, about as many outputs as a plot shows.
 
@@ -34,7 +62,7 @@ class Response:
     error: estimated, of the deformation, relative to its largest value. frequency, amplitude: of
     the deformation's spectrum over the second half. jammed: when both flanks are first pressed at
     once, as the axes came together; None: never. steady: until when roundings stay below the error
-    asked; None: to the end.
+    asked; None: to the end. tooth_load: of the second half; load: on the teeth at every time.
     """
 
     method: str
@@ -53,6 +81,8 @@ class Response:
     amplitude_mm: Columns
     jammed_ms: float | None = None
     steady_ms: float | None = None
+    tooth_load: ToothLoad | None = None
+    load_N: Columns = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,7 +102,8 @@ class Stability:
 
     growth (depths, frequencies). here: at the pair's own frequency and depth; None where it has
     none. bands: unstable mesh frequencies at its own depth. limited_rms: of the motion at its own
-    frequency where contact is unstable there and teeth that part limit it; else None.
+    frequency where contact is unstable there and teeth that part limit it; else None. error: of a
+    multiplier, estimated, the largest of the map.
     """
 
     frequency_Hz: Columns
@@ -85,6 +116,7 @@ class Stability:
     bands_Hz: Rows
     tongues: tuple[Tongue, ...]
     limited_rms_mm: float | None = None
+    error: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,7 +127,9 @@ class Speeds:
     mesh also pulls. repeats: after how many periods of the
     mesh; 0: not within eight. growth: largest multiplier of
     teeth in contact. jammed: speeds at which both flanks are pressed at once, as the axes come
-    together. harmonics (orders, speeds): amplitudes.
+    together. harmonics (orders, speeds): amplitudes. loads (3, speeds): maximum, minimum and RMS of
+    the tooth load. errors: estimated, of the deformation relative to its largest value; of motions
+    that do not repeat how much their RMS varies.
     """
 
     teeth_part: bool
@@ -111,6 +145,12 @@ class Speeds:
     growth: Columns
     jammed_rpm: Columns
     harmonics_mm: tuple[Gaps, ...]
+    loads_N: tuple[Gaps, ...] = ()
+    falling_loads_N: tuple[Gaps, ...] = ()
+    dynamic_factor: Gaps = ()
+    falling_dynamic_factor: Gaps = ()
+    errors: Gaps = ()
+    falling_errors: Gaps = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -155,5 +195,6 @@ class DynamicsDesign:
     response: Response | None = None
     stability: Stability | None = None
     speeds: Speeds | None = None
+    standard: StandardFactors | None = None
     chosen: Chosen | None = None
     warnings: tuple[str, ...] = ()

@@ -21,6 +21,7 @@ from gearopt.formulations.dynamics.steady_motion import (
     linear_motion,
     settled,
 )
+from gearopt.formulations.dynamics.tooth_load import dynamic_factor
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.moving_pair import MovingPair
@@ -66,6 +67,12 @@ def over_speeds(
         growth=columns([c.growth for c in contacts], 6),
         jammed_rpm=columns(speeds_rpm[np.array(jams, bool)]),
         harmonics_mm=tuple(gaps(row, 5) for row in np.array([o.amplitudes for o in rising]).T),
+        loads_N=tuple(gaps(row, 7) for row in zip(*(o.load for o in rising), strict=True)),
+        falling_loads_N=tuple(gaps(row, 7) for row in zip(*(o.load for o in falling), strict=True)),
+        dynamic_factor=gaps([dynamic_factor(o.load, pair.load) for o in rising], 6),
+        falling_dynamic_factor=gaps([dynamic_factor(o.load, pair.load) for o in falling], 6),
+        errors=gaps([o.error for o in rising], 3),
+        falling_errors=gaps([o.error for o in falling], 3),
     )
 
 

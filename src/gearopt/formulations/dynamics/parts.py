@@ -14,6 +14,7 @@ from gearopt.formulations.dynamics.design import (
     Response,
     Stability,
     Tongue,
+    ToothLoad,
 )
 from gearopt.formulations.dynamics.motion.simulate import simulate
 from gearopt.formulations.dynamics.motion.stability import (
@@ -23,7 +24,9 @@ from gearopt.formulations.dynamics.motion.stability import (
     ready,
     stability_map,
 )
-from gearopt.formulations.pair.design import ContactLoad, PairContact
+from gearopt.formulations.dynamics.tooth_load import dynamic_factor, load_over, tooth_load
+from gearopt.formulations.pair.design import ContactLoad, PairContact, PairRelief
+from gearopt.formulations.pair.flank_design import FlankContact, FlankLoad
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.kinematics import growth
@@ -39,6 +42,7 @@ from gearopt.physics.motion.linear import (
 from gearopt.physics.motion.moving_pair import MovingPair
 from gearopt.physics.motion.stiffness_wave import Wave
 
+Contact = PairContact | FlankContact  # of spur gears, or by slices of the face
 MILLI = 1e3  # ms of a s
 Grid = tuple[float, float, int]  # ends and how many, equally far apart
 LINES = 400  # of a spectrum that are kept
@@ -116,6 +120,9 @@ def response(
     times, delta = simulated.times, simulated.motion.delta
     later = len(times) // 2
     steady = delta[later:] - delta[later:].mean()
+    states = simulated.motion.states
+    load = load_over(pair, level, times[later:], states[later:])
+    stiffness = pair.wave.value(pair.mesh_frequency * times)
     lines, amplitude = _spectrum(steady, times[1] - times[0])
     digits = max(7, 2 - math.floor(math.log10(error)))  # more than the error that is asked
     return Response(
@@ -130,11 +137,18 @@ def response(
         highest_mm=float(delta.max()),
         time_ms=columns(MILLI * times, 15),
         deformation_mm=columns(delta, digits),
-        axes_mm=tuple(columns(c, digits) for c in _axes(pair, level, simulated.motion.states)),
+        axes_mm=tuple(columns(c, digits) for c in _axes(pair, level, states)),
         frequency_Hz=columns(lines),
         amplitude_mm=columns(amplitude, 5),
         jammed_ms=None if simulated.motion.jammed is None else MILLI * simulated.motion.jammed,
         steady_ms=MILLI * simulated.steady if simulated.steady < math.inf else None,
+        tooth_load=ToothLoad(
+            maximum_N=load.most,
+            minimum_N=load.least,
+            rms_N=load.rms,
+            dynamic_factor=dynamic_factor(load, pair.load),
+        ),
+        load_N=columns(tooth_load(pair, level, states, stiffness), 6),
     )
 
 
@@ -203,7 +217,7 @@ def stability(
     multipliers = largest(system, wave, np.append(mine, frequencies), clock)
     clock.evaluations += len(multipliers)
     waves = [scaled(wave, float(d)) for d in depths]
-    growth = stability_map(system, waves, frequencies, clock)
+    growth, error = stability_map(system, waves, frequencies, clock)
     if len(growth) < 2:
         return None
     here, multipliers = (float(multipliers[0]) if mine.size else None), multipliers[mine.size :]
@@ -229,23 +243,51 @@ def stability(
         here=here,
         bands_Hz=tuple(columns(ends) for ends in unstable),
         tongues=tuple(widest[:WIDEST]),
+        error=error if math.isfinite(error) else None,
     )
 
 
-def nearest_load(loads: Sequence[ContactLoad], force: float) -> ContactLoad:
+def nearest_load(loads: Sequence[Any], force: float) -> Any:
     """Return the load whose normal force is nearest to `force` [N], the first of equally near."""
     return min(loads, key=lambda load: abs(load.normal_force_N - force))
 
 
-def of_contact(contact: PairContact, load: ContactLoad) -> Wave:
+def unloaded_error(contact: PairContact, relief: PairRelief | None) -> Columns:
+    """Return by how much unloaded teeth are apart at every travel of a contact [mm].
+
+    The least depth removed from the flanks of a pair of teeth in contact.
+    """
+    travel = np.array(contact.travel_mm)
+    if relief is None:
+        return (0.0,) * travel.size
+    removed = np.array(relief.pinion_removed_mm) + np.array(relief.wheel_removed_mm)
+    place = np.array(contact.position_mm) - contact.position_mm[0]
+    pairs = np.arange(math.ceil(contact.contact_ratio))[:, None]
+    each = np.interp(travel + pairs * contact.base_pitch_mm, place, removed, right=math.inf)
+    return tuple(map(float, each.min(axis=0)))
+
+
+def error_harmonics(contact: Contact, error: Columns, count: int) -> tuple[complex, ...]:
+    """Return e_1 to e_count of an error at every travel of a contact, as `MovingPair` has them."""
+    phase = np.array(contact.travel_mm) / contact.base_pitch_mm
+    edges, first = np.unique(phase, return_index=True)
+    after = np.searchsorted(phase, edges, "right") - 1
+    inside = edges < 1.0 - 1e-12
+    values = np.array(error)
+    curve = Wave(edges[inside], values[first][inside], values[after][inside])
+    return tuple(complex(2.0 * c) for c in curve.harmonics(count)[1:])
+
+
+def of_contact(contact: Contact, load: ContactLoad | FlankLoad, unloaded: Any = 0.0) -> Wave:
     """Return normal force over transmission error of a pair's own teeth at one of its loads.
 
-    With this stiffness the normal force deforms the mesh by the transmission error, relief and all.
-    Both sides of the points where pairs come and go are a step of the wave. load: of the contact,
-    or of its relief.
+    With this stiffness the normal force deforms the mesh by the transmission error, relief and all,
+    less the part of it that counts as an error of unloaded teeth [mm], at every travel. Both sides
+    of the points where pairs come and go are a step of the wave. load: of the contact, or of its
+    relief.
     """
     phase = np.array(contact.travel_mm) / contact.base_pitch_mm
-    stiffness = load.normal_force_N / np.array(load.transmission_error_mm)
+    stiffness = load.normal_force_N / (np.array(load.transmission_error_mm) - np.array(unloaded))
     inside = (phase > 1e-12) & (phase < 1.0 - 1e-12)
     edges = np.unique(phase[inside])
     left = np.array([stiffness[phase == e][0] for e in edges])

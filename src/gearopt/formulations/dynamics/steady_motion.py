@@ -18,6 +18,7 @@ from gearopt.formulations.dynamics.motion.simulate import fastest
 from gearopt.formulations.dynamics.motion.stability import UNSTABLE, largest, ready
 from gearopt.formulations.dynamics.motion.timeline import timeline
 from gearopt.formulations.dynamics.parts import around, jammed, resting
+from gearopt.formulations.dynamics.tooth_load import Load, load_over
 from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
@@ -28,6 +29,8 @@ ORDERS = 12  # of the mesh frequency, shown over speed
 FASTEST_MODES, FOURIER_TIMES, MOST_HARMONICS = 3.0, 4, 512  # harmonics of a motion in contact
 GUESSED = 40  # of one that parts, at most: its state is made exact afterwards
 STEPS_PER_PERIOD = 12.0  # of RK8 in a period of the fastest mode: 1e-6 of a motion
+FINER = 4  # times as many samples of a motion in contact for the load on its teeth
+ROUNDING, SAFETY = 1e-9, 2.0  # error at least; times the change by half the steps
 LOOKS, FINEST = 64, 16.0  # samples of a period of the mesh at least, and of the fastest mode
 RMS_JUMP = 0.3  # of its RMS by which a motion may differ from the one at the speed before
 SHOTS, CLOSED = 6, 1e-9  # Newton's steps to a state that repeats; what is left, of its size
@@ -49,7 +52,9 @@ class Motion:
     """A motion at a speed: RMS of delta about its mean, least and largest delta [mm].
 
     amplitudes (ORDERS,) of the orders of the mesh frequency [mm]. repeats: after how many periods
-    of the mesh, 0: not within MOST_PERIODS. A motion that grows for ever has NaN for numbers.
+    of the mesh, 0: not within MOST_PERIODS. load: on the teeth. error: estimated, of delta relative
+    to its largest value; of a motion that does not repeat the range of the RMS of its quarters. A
+    motion that grows for ever has NaN for numbers.
     jams: both flanks are pressed at once, as the axes came together. For the next speed: the state
     at phase 0, delta at LOOKS phases of each period, and its series.
     """
@@ -60,6 +65,8 @@ class Motion:
     amplitudes: Array
     repeats: int
     jams: bool
+    load: Load
+    error: float
     state: Array
     delta: Array
     series: Orbit
@@ -71,10 +78,14 @@ class Motion:
 
 
 class Contact(NamedTuple):
-    """The motion of teeth that stay in contact, and its largest multiplier."""
+    """The motion of teeth that stay in contact, its largest multiplier, and its error.
+
+    error: of delta, relative to its largest value: what half of the harmonics change.
+    """
 
     series: Orbit
     growth: float
+    error: float
 
     @property
     def holds(self) -> bool:
@@ -99,8 +110,11 @@ def in_contact(
         grown = largest(system, pair.wave, np.array([frequency]), clock)
         if not len(grown):
             break
-        contacts.append(Contact(series, float(grown[0])))
-        clock.evaluations += 2
+        half = linear_orbit(pair, level, float(frequency), max(1, wanted // 2))
+        count = LOOKS * (2 * wanted // LOOKS + 1)
+        error = _apart(half.delta(count), series.delta(count))
+        contacts.append(Contact(series, float(grown[0]), max(error, ROUNDING)))
+        clock.evaluations += 3
     return contacts
 
 
@@ -109,25 +123,30 @@ def enough(pair: MovingPair, level: str, frequency: float, harmonics: int) -> in
 
     A stiffness with kinks or jumps excites the fastest mode at any speed: harmonics to
     FASTEST_MODES times that mode, at most MOST_HARMONICS. A Fourier series: FOURIER_TIMES times
-    its own.
+    its own, and those of the transmission error.
     """
+    smooth = FOURIER_TIMES * max(len(pair.wave.cosines), len(pair.error))
     if len(pair.wave.edges) == 1:
-        return max(harmonics, FOURIER_TIMES * len(pair.wave.cosines))
+        return max(harmonics, smooth)
     top = 1.0 / fastest(replace(pair, mesh_frequency=0.0), level)
-    return max(harmonics, min(MOST_HARMONICS, math.ceil(FASTEST_MODES * top / frequency)))
+    most = min(MOST_HARMONICS, math.ceil(FASTEST_MODES * top / frequency))
+    return max(harmonics, most, smooth)
 
 
 def linear_motion(pair: MovingPair, level: str, contact: Contact) -> Motion:
     """Return the motion of teeth in contact, which grows for ever where that is unstable."""
     series = contact.series
     count = LOOKS * (2 * len(series.harmonics) // LOOKS + 1)
-    passed = states(pair, level, series, count)
+    passed = states(pair, level, series, FINER * count)
+    times = np.arange(FINER * count + 1) / (FINER * count * series.frequency)
     motion = Motion(
         series.rms,
         *series.extremes,
         _amplitudes(series),
         1,
         bool(np.any(jammed(pair, level, passed))),
+        load_over(pair, level, times, np.vstack([passed, passed[:1]])),
+        contact.error,
         passed[0],
         series.delta(count)[:: count // LOOKS],
         series,
@@ -138,7 +157,13 @@ def linear_motion(pair: MovingPair, level: str, contact: Contact) -> Motion:
 def _growing(motion: Motion, jams: bool) -> Motion:
     """Record of a motion that grows for ever."""
     none, nothing = math.nan, np.full(ORDERS, math.nan)
-    return replace(motion, rms=none, least=none, highest=none, amplitudes=nothing, jams=jams)
+    bare = replace(motion, load=Load(none, none, none), amplitudes=nothing, error=none, jams=jams)
+    return replace(bare, rms=none, least=none, highest=none)
+
+
+def _apart(other: Array, delta: Array) -> float:
+    """Return by how much two courses of delta differ, relative to the largest of the second."""
+    return float(np.max(np.abs(other - delta)) / np.max(np.abs(delta)))
 
 
 def _amplitudes(series: Orbit) -> Array:
@@ -165,9 +190,9 @@ def continued(
             return None
         state = states(pair, level, balanced, SAMPLES * harmonics)[0]
     repeating = _repeating(pair, level, state, periods, clock)
-    motion = (
-        None if repeating is None else _periodic_response(pair, level, repeating, periods, clock)
-    )
+    if repeating is None:
+        return None
+    motion = _periodic_response(pair, level, repeating, periods, clock)
     if motion is None:
         return None
     size = max(motion.delta.size, last.delta.size)
@@ -185,11 +210,10 @@ def _repeating(
     """
     scale, size = _scale(pair, level), state.size
     for _ in range(SHOTS):
-        starts = np.vstack([state, state + MOVED * np.diag(scale)])
-        ends = np.array([_passed(pair, level, start, periods, clock) for start in starts])
-        if not np.all(np.isfinite(ends)):
+        end, slope = _slope(pair, level, state, periods, clock)
+        if not np.all(np.isfinite(slope)):
             return None
-        wrong, slope = (ends[0] - state) / scale, (ends[1:] - ends[0]).T / scale[:, None] / MOVED
+        wrong = end - state / scale
         if np.max(np.abs(wrong)) <= CLOSED * np.max(np.abs(state / scale)):
             stable = np.max(np.abs(np.linalg.eigvals(slope))) <= 1.0 + UNSTABLE
             return state if stable else None
@@ -197,14 +221,29 @@ def _repeating(
     return None
 
 
-def _passed(pair: MovingPair, level: str, state: Array, periods: int, clock: Clock) -> Array:
+def _slope(
+    pair: MovingPair, level: str, state: Array, periods: int, clock: Clock
+) -> tuple[Array, Array]:
+    """Return the state after periods, and its derivatives by the state, both over `_scale`."""
+    scale = _scale(pair, level)
+    starts = np.vstack([state, state + MOVED * np.diag(scale)])
+    ends = np.array([_passed(pair, level, start, periods, clock) for start in starts]) / scale
+    return ends[0], (ends[1:] - ends[0]).T / MOVED
+
+
+def _passed(
+    pair: MovingPair, level: str, state: Array, periods: int, clock: Clock, finer: float = 1.0
+) -> Array:
     """Return the state after periods of the mesh; NaN where the clock stopped."""
-    motion = _marched(pair, level, np.array([0.0, periods]) / pair.mesh_frequency, state, clock)
+    ends = np.array([0.0, periods]) / pair.mesh_frequency
+    motion = _marched(pair, level, ends, state, clock, finer)
     return np.asarray(motion.states[1] if len(motion.states) > 1 else np.full(state.size, math.nan))
 
 
-def _marched(pair: MovingPair, level: str, times: Array, state: Array, clock: Clock) -> Marched:
-    longest = fastest(pair, level) / STEPS_PER_PERIOD
+def _marched(
+    pair: MovingPair, level: str, times: Array, state: Array, clock: Clock, finer: float = 1.0
+) -> Marched:
+    longest = fastest(pair, level) / STEPS_PER_PERIOD / finer
     return march(pair, level, timeline(pair, times), "rk8", longest, state, clock)
 
 
@@ -282,7 +321,7 @@ def _change(passed: Array, periods: int) -> float:
 def _periodic_response(
     pair: MovingPair, level: str, state: Array, repeats: int, clock: Clock
 ) -> Motion | None:
-    """Amplitudes, contact losses and multiplier of the motion from a state on, over its periods.
+    """Amplitudes, load and error of the motion from a state on, over its periods.
 
     None: the clock stopped.
     """
@@ -300,6 +339,9 @@ def _periodic_response(
             repeats = shorter
             break
     series = Orbit(frequency, np.fft.rfft(delta)[::periods][: looks // 2] / delta.size)
+    error = _error(pair, level, motion, times, repeats, clock)
+    if error is None:
+        return None
     return Motion(
         rms=float(delta.std()),
         least=float(delta.min()),
@@ -307,7 +349,34 @@ def _periodic_response(
         amplitudes=_amplitudes(series),
         repeats=repeats,
         jams=motion.jammed is not None,
+        load=load_over(pair, level, times, motion.states),
+        error=error,
         state=motion.states[-1],
         delta=delta[: (repeats or KEPT) * looks : finer],
         series=series,
     )
+
+
+def _error(
+    pair: MovingPair, level: str, motion: Marched, times: Array, repeats: int, clock: Clock
+) -> float | None:
+    """Return the error of delta of a motion over its periods, relative to its largest value.
+
+    One that repeats: what half the steps change, with the state that they repeat, by a step of
+    Newton's method from its own. Else the range of the RMS of four quarters. None: the clock
+    stopped.
+    """
+    delta, state = motion.delta, motion.states[0]
+    if not repeats:
+        parts = [quarter.std() for quarter in np.array_split(delta, 4)]
+        return float(np.ptp(parts) / np.max(np.abs(delta)))
+    scale = _scale(pair, level)
+    _, slope = _slope(pair, level, state, repeats, clock)
+    wrong = _passed(pair, level, state, repeats, clock, 2.0) / scale - state / scale
+    if not np.all(np.isfinite(slope)) or not np.all(np.isfinite(wrong)):
+        return None
+    moved = np.linalg.lstsq(np.eye(state.size) - slope, wrong, rcond=None)[0]
+    finer = _marched(pair, level, times, state + scale * moved, clock, 2.0)
+    if len(finer.states) < len(times):
+        return None
+    return max(SAFETY * _apart(finer.delta, delta), ROUNDING)

@@ -61,7 +61,8 @@ class FlankContact(ElasticTeeth):
     tips of pinion and wheel, lengths on the path and diameters where it starts. contact_lines:
     least, mean and largest length of all, by closed form. path_mm: positions s of the columns of a
     flank; place_mm: y of its rows, from the middle of the face towards the end where contact
-    begins. travel_mm: over one base pitch.
+    begins. travel_mm: over one base pitch; unloaded_error_mm: by how much unloaded flanks are apart
+    there.
     """
 
     slices: int
@@ -78,5 +79,6 @@ class FlankContact(ElasticTeeth):
     path_mm: Columns
     place_mm: Columns
     travel_mm: Columns
+    unloaded_error_mm: Columns
     loads: tuple[FlankLoad, ...]
     validity: tuple[str, ...] = ()

@@ -32,8 +32,8 @@ class MovingPair:
     damping [N s/mm] of the mesh, in contact; drag c_0 [N s/mm], in contact and apart. backlash [mm]
     along the line of action: teeth part at delta > 0 and meet on the coast flank at delta >
     backlash; None: a spring that also pulls. kinematics: of `kinematics.KINEMATICS`. error
-    (a_1, a_2, ...) [mm]: transmission error sum of a_h cos(2 pi h f t), whose acceleration acts on
-    delta.
+    (e_1, e_2, ...) [mm]: transmission error Re sum of e_h exp(2 pi i h f t), by which unloaded
+    teeth are apart; its acceleration acts on delta.
     """
 
     pinion: Rotor
@@ -45,7 +45,7 @@ class MovingPair:
     drag: float = 0.0
     backlash: float | None = None
     kinematics: str = "exact"
-    error: tuple[float, ...] = ()
+    error: tuple[complex, ...] = ()
 
     @property
     def rotors(self) -> tuple[Rotor, Rotor]:

@@ -10,6 +10,7 @@ from gearopt.formulations.dynamics.design import DynamicsDesign
 from gearopt.formulations.dynamics.motion.stability import UNSTABLE
 from gearopt.formulations.dynamics.motions_over_speed import over_speeds, rms_limited_by_backlash
 from gearopt.formulations.dynamics.orbit.task import pair_of
+from gearopt.formulations.dynamics.standard_factors import Toothing, standard_factors
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.explaining.explain import binding
@@ -42,19 +43,34 @@ ONCE = (
     "numbers are solved again only where teeth stay in contact, without a limit of the Floquet "
     "multiplier, and the answer is locally optimal"
 )
+DAMPED = {
+    "in_contact": "The mesh damps while teeth are in contact, not while they are apart.",
+    "always": "The mesh damps always, also while teeth are apart.",
+}
+TOOTH_LOAD = (
+    "The tooth load is that of all pairs of teeth in contact together, of their spring and damper."
+)
+K_V = (
+    "K_v is of K_A = 1 and deviations that are not run in, with the mean stiffness and the mesh "
+    "mass of the motion; teeth are of ISO 53 without profile shift where no file of kind pair is "
+    "named; A_v of AGMA is taken as the accuracy grade."
+)
 NOTHING = "the file has no table [optimise], so that nothing is chosen"
 
 
 def motion(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """Return the motions of the file's pair, or of the pair of least vibration with [optimise]."""
     clock = Clock(ask.budget, ask.watch)
-    wave, assumed = of_teeth(scene, ask) if scene.mesh.pair else (wave_of(scene.mesh), [])
-    pair = scene.pair(wave)
+    if scene.mesh.pair is not None:
+        wave, error, teeth, assumed = of_teeth(scene, ask)
+    else:
+        wave, error, teeth, assumed = wave_of(scene.mesh), (), scene.toothing, []
+    pair = scene.pair(wave, error)
     if scene.optimise is not None:
-        result = _least(scene, ask, pair, clock)
+        result = _least(scene, ask, pair, teeth, clock)
         return _assuming(result, assumed)
     without_method(ask, NOTHING)
-    design = _design(scene, pair, scene.mesh.axes, clock)
+    design = _design(scene, pair, teeth, scene.mesh.axes, clock)
     missing = _missing(scene, design) if clock.stopped else ""
     evaluated = Result(
         name="dynamics",
@@ -62,7 +78,7 @@ def motion(scene: Scene, ask: Ask, known: Result | None) -> Result:
         method=design.response.method if design.response else "modes",
         objective={},
         certificate={"feasibility": 0.0},
-        design=untyped(replace(design, warnings=tuple(warnings(design, scene.module)))),
+        design=untyped(replace(design, warnings=tuple(warnings(design, scene.module, teeth)))),
         report={"assumptions": assumptions(scene)},
         message=missing,
         evaluations=clock.evaluations + 1,
@@ -78,7 +94,7 @@ def _assuming(result: Result, assumed: list[str]) -> Result:
     return replace(result, report=result.report | {"assumptions": sentences}) if assumed else result
 
 
-def _least(scene: Scene, ask: Ask, before: MovingPair, clock: Clock) -> Result:
+def _least(scene: Scene, ask: Ask, before: MovingPair, teeth: Toothing, clock: Clock) -> Result:
     """Return the pair of least vibration, with what the tables of the file ask of it."""
     assert scene.optimise is not None
     result, best, task = optimised(scene, ask, before, clock)
@@ -86,11 +102,13 @@ def _least(scene: Scene, ask: Ask, before: MovingPair, clock: Clock) -> Result:
         return result
     at = best.dense_rpm[best.dense_mm.index(max(best.dense_mm))]
     values = [getattr(best, name) for name in BEST]
-    design = replace(_design(scene, pair_of(task, values, at), "line", clock), chosen=best)
+    teeth = replace(teeth, contact_ratio=best.contact_ratio, face_width=best.face_width_mm)
+    moved = _design(scene, pair_of(task, values, at), teeth, "line", clock)
+    design = replace(moved, chosen=best)
     if clock.over:
         text = f"{result.message} {_missing(scene, design)}".strip()
         result = replace(result, message=text)
-    said = (*told(best, result, scene.optimise.periods), *warnings(design, scene.module))
+    said = (*told(best, result, scene.optimise.periods), *warnings(design, scene.module, teeth))
     report: dict[str, Any] = {"assumptions": assumptions(scene)}
     if notes := at_ends(task, values):
         report["notes"] = notes
@@ -112,7 +130,9 @@ def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
     return explained(scene, result, clock, answer, lambda other: beside(scene, other, result))
 
 
-def _design(scene: Scene, pair: MovingPair, level: str, clock: Clock) -> DynamicsDesign:
+def _design(
+    scene: Scene, pair: MovingPair, teeth: Toothing, level: str, clock: Clock
+) -> DynamicsDesign:
     """Return the motions that the tables of the file ask of a pair, as far as time suffices."""
     simulate, stability, speeds = scene.simulate, scene.stability, scene.speeds
     response = mapped = motions = None
@@ -134,6 +154,10 @@ def _design(scene: Scene, pair: MovingPair, level: str, clock: Clock) -> Dynamic
         grid = low, high, speeds.points
         motions = over_speeds(pair, level, scene.mesh.teeth, grid, speeds.harmonics, clock)
         motions = motions if len(motions.speed_rpm) > 1 else None
+    standard = None
+    if response or motions:
+        own_rpm = 60.0 * pair.mesh_frequency / scene.mesh.teeth
+        standard = standard_factors(teeth, pair, own_rpm, motions.speed_rpm if motions else ())
     return DynamicsDesign(
         kinematics=pair.kinematics,
         axes=level,
@@ -142,6 +166,7 @@ def _design(scene: Scene, pair: MovingPair, level: str, clock: Clock) -> Dynamic
         response=response,
         stability=mapped,
         speeds=motions,
+        standard=standard,
     )
 
 
@@ -180,6 +205,12 @@ def assumptions(scene: Scene) -> list[str]:
         "Rigid gears on massless springs and dampers; the teeth are one spring along the line of "
         "action, its stiffness a function of time at constant mesh frequency.",
     ]
+    if scene.mesh.damping and scene.mesh.backlash is not None:
+        said.append(DAMPED[scene.mesh.damping_acts])
+    if scene.simulate or scene.speeds:
+        said.append(TOOTH_LOAD)
+    if scene.mesh.accuracy_grade is not None:
+        said.append(K_V)
     if scene.mesh.kinematics.startswith("paper"):
         said.append(
             "The paper's kinematics are not those of two involutes: a rotation of the whole pair "

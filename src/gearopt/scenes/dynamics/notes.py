@@ -3,25 +3,25 @@
 import math
 from collections.abc import Sequence
 
-from gearopt.formulations.dynamics.design import DynamicsDesign, Response, Speeds
+from gearopt.formulations.dynamics.design import OUT_OF_MESH, DynamicsDesign, Response, Speeds
 from gearopt.formulations.dynamics.motion.stability import UNSTABLE
 from gearopt.formulations.dynamics.motions_over_speed import ranges
 from gearopt.formulations.dynamics.orbit.task import MICRO
+from gearopt.formulations.dynamics.standard_factors import Toothing
 from gearopt.formulations.dynamics.steady_motion import MOST_PERIODS
 from gearopt.scenes.dynamics.tables import MOST_OUTPUTS
 
-DEPTH = 2.0  # modules: working depth of the teeth; axes that are further apart have none in mesh
 APART = 0.1  # modules by which axes part or teeth give way without changing the stiffness much
 CLEARANCE = 0.25  # modules between tips and roots (ISO 53)
 OUTPUTS_PER_PERIOD = 10.0  # times in a period of the fastest motion at which it is told, at least
 
 
-def warnings(design: DynamicsDesign, module: float) -> list[str]:
+def warnings(design: DynamicsDesign, module: float, teeth: Toothing) -> list[str]:
     """Return warnings: unstable, parting or jammed motions, limits of the model, of the time.
 
-    module [mm]: of the teeth.
+    First of all whether the teeth leave mesh. module [mm]: of the teeth.
     """
-    sentences, stability = _out_of_range(design, module), design.stability
+    sentences, stability = _out_of_range(design, module, teeth), design.stability
     if design.response is not None:
         sentences += _of_response(design.response, design)
     if stability is not None and stability.here is not None and stability.here > 1.0 + UNSTABLE:
@@ -38,31 +38,28 @@ def warnings(design: DynamicsDesign, module: float) -> list[str]:
     return sentences
 
 
-def _out_of_range(design: DynamicsDesign, module: float) -> list[str]:
+def _out_of_range(design: DynamicsDesign, module: float, teeth: Toothing) -> list[str]:
     """Return where axes or teeth move so far that the stiffness of the file is not theirs."""
     rest, moved, sentences = design.equilibrium, design.response, list[str]()
     growths, pressed = [rest.centre_distance_growth_mm], [rest.deformation_mm]
+    apart = rest.centre_distance_mm - rest.centre_distance_growth_mm
     if moved is not None:
         pressed += moved.deformation_mm
         if moved.axes_mm:
-            apart = rest.centre_distance_mm - rest.centre_distance_growth_mm
             growths += (
                 math.hypot(apart + x2 - x1, y2 - y1) - apart
                 for x1, y1, x2, y2 in zip(*moved.axes_mm, strict=True)
             )
     most, least, deep = max(growths) / module, -min(growths) / module, -min(pressed) / module
-    if most > APART:
-        far = f"The axes move apart by up to {most * module:.3g} mm, {most:.3g} modules"
-        if most > DEPTH:
-            sentences.append(
-                f"{far}: teeth are {DEPTH:g} modules deep in mesh, so that none touch there. "
-                "The model neglects this, and its numbers mean nothing from there on."
-            )
-        else:
-            sentences.append(
-                f"{far}: the contact ratio falls, and with it the stiffness; the model keeps both "
-                f"as at rest. It holds up to about {APART:g} modules."
-            )
+    far = f"axes move apart by up to {most * module:.3g} mm, {most:.3g} modules"
+    left = teeth.apart(apart, most * module)
+    if left < 1.0 <= teeth.contact_ratio:
+        sentences.append(_out_of_mesh(far, teeth, left))
+    elif most > APART:
+        sentences.append(
+            f"The {far}: the contact ratio falls to {left:.3g}, and with it the stiffness; the "
+            f"model keeps both as at rest. It holds up to about {APART:g} modules."
+        )
     if least > CLEARANCE:
         sentences.append(
             f"The axes come together by up to {least * module:.3g} mm, {least:.3g} modules: tips "
@@ -74,6 +71,18 @@ def _out_of_range(design: DynamicsDesign, module: float) -> list[str]:
             "break long before, and their stiffness is that of small deformations."
         )
     return sentences
+
+
+def _out_of_mesh(far: str, teeth: Toothing, left: float) -> str:
+    """Say that teeth leave mesh."""
+    where = ", below 1, so that a pair of teeth parts before the next one touches"
+    if left <= 0.0:
+        where = ", so that none touch"
+    return (
+        f"{OUT_OF_MESH}: the {far}, where the contact ratio is {max(left, 0.0):.3g}{where}; it is "
+        f"{teeth.contact_ratio:.3g} where the axes do not move. The model neglects this, and its "
+        "numbers mean nothing from there on."
+    )
 
 
 def _of_response(response: Response, design: DynamicsDesign) -> list[str]:

@@ -1,11 +1,17 @@
 """A file of a pair on moving axes as a whole: the pair that it describes, and what must fit."""
 
 import math
+from dataclasses import replace
 from fractions import Fraction
+from itertools import zip_longest
 
 from pydantic import model_validator
 
 from gearopt.formulations.dynamics.orbit.task import Task
+from gearopt.formulations.dynamics.standard_factors import Toothing
+from gearopt.physics.gears import GearPair, Rack
+from gearopt.physics.geometry.contact import contact_path
+from gearopt.physics.motion.linear import static
 from gearopt.physics.motion.moving_pair import MovingPair, Rotor, damping_of
 from gearopt.physics.motion.stiffness_wave import Wave, constant, fourier, trapezoid
 from gearopt.scenes.dynamics.handed_on import TAKES_ROTORS
@@ -27,6 +33,7 @@ NEEDED = {  # keys of [mesh] that a shape of the wave asks for; others change no
     "fourier": ("stiffness", "cosines"),
     "pair": ("pair",),
 }
+DEEPEST = 3.0  # transverse contact ratio of the deepest spur teeth
 MOST_PERIODS = 100_000  # of the mesh in a motion
 SHAPED = ("stiffness", "depth", "duty", "ramp", "cosines", "sines", "pair")
 
@@ -60,6 +67,7 @@ class Scene(ProblemFile):
                 raise refuse(rule, at=("mesh", name))
         idle = set(SHAPED) - set(NEEDED[mesh.wave])
         idle -= {"sines"} if mesh.wave == "fourier" else set()
+        idle -= {"pair"} if mesh.transmission_error == "pair" else set()
         for name in idle & mesh.model_fields_set:
             rule = f'changes nothing of wave = "{mesh.wave}"'
             raise refuse(rule, at=("mesh", name), action="remove")
@@ -76,6 +84,9 @@ class Scene(ProblemFile):
             rule = "pulls the teeth apart: the normal load of both torques is not above zero"
             raise refuse(rule, at=("wheel", "torque"), action="remove")
         self._check_positive()
+        self._check_error_and_damping()
+        self._check_in_mesh()
+        self._check_teeth()
         self._check_asked()
         self._check_optimise()
         return self
@@ -115,6 +126,54 @@ class Scene(ProblemFile):
             ends = [low, round(max(low, float(Fraction(9, 10) / mesh.duty)), 2)]
             raise refuse(rule, ends, ("stability", "depth"))
 
+    def _check_error_and_damping(self) -> None:
+        """Refuse a transmission error or damping that is incomplete, or that changes nothing."""
+        mesh = self.mesh
+        if mesh.transmission_error == "pair" and mesh.pair is None:
+            raise refuse('is missing: transmission_error = "pair" needs it', at=("mesh", "pair"))
+        for name in ("error_cosines", "error_sines", "transmission_error"):
+            if self.optimise is not None and name in mesh.model_fields_set:
+                rule = "is not in [optimise], which is of teeth without errors"
+                raise refuse(rule, at=("mesh", name), action="remove")
+        if "damping_acts" in mesh.model_fields_set and (mesh.backlash is None or not mesh.damping):
+            rule = "changes nothing without backlash, as teeth never part, and without damping"
+            raise refuse(rule, at=("mesh", "damping_acts"), action="remove")
+
+    def _check_in_mesh(self) -> None:
+        """Refuse bearings that let the load move the axes so far apart that no teeth touch."""
+        if self.mesh.axes == "fixed" or self.optimise is not None:
+            return
+        pair, teeth = self.pair(constant(1.0)), self.toothing
+        if self.mesh.duty is None:
+            teeth = replace(teeth, contact_ratio=DEEPEST)  # their tips are not known
+        start, growth, times = pair.rest.centre_distance, _growth(pair), 1
+        if teeth.apart(start, growth) > 0.0:
+            return
+        while teeth.apart(start, _growth(_stiffer(pair, times))) < 1.0:
+            times *= 2
+        name = min(("pinion", "wheel"), key=lambda n: getattr(self, n).bearing_stiffness.value)
+        rule = f"lets the load move the axes apart by {growth:.3g} mm, where no teeth touch"
+        remedy = f"Write bearings that are at least {times} times as stiff, or less torque"
+        raise refuse(rule, remedy, (name, "bearing_stiffness"), "tell")
+
+    def _check_teeth(self) -> None:
+        """Refuse data of K_v that change nothing."""
+        mesh = self.mesh
+        wider = mesh.face_width is not None
+        if wider and (mesh.pair is not None or self.optimise is not None):
+            source = "the file of `pair`" if mesh.pair is not None else "[optimise]"
+            raise refuse(f"follows from {source}", at=("mesh", "face_width"), action="remove")
+        for name in ("face_width", "accuracy_grade"):
+            if getattr(mesh, name) is not None and not (self.simulate or self.speeds):
+                rule = "changes nothing without [simulate] and [speeds], beside which K_v is told"
+                raise refuse(rule, at=("mesh", name), action="remove")
+
+    @property
+    def _shaken(self) -> bool:
+        """Whether a transmission error excites the mesh."""
+        mesh = self.mesh
+        return bool(mesh.error_cosines or mesh.error_sines) or mesh.transmission_error == "pair"
+
     def _check_asked(self) -> None:
         """Refuse what is asked of a mesh that cannot give it."""
         mesh = self.mesh
@@ -126,8 +185,9 @@ class Scene(ProblemFile):
         if self.stability is not None and mesh.wave == "constant":
             rule = 'maps a stiffness that changes: wave = "constant" has no map'
             raise refuse(rule, at=("stability",), action="remove")
-        if self.simulate is not None and mesh.wave != "constant" and mesh.speed is None:
-            rule = "is missing: a stiffness that changes has a mesh frequency"
+        varies = mesh.wave != "constant" or self._shaken
+        if self.simulate is not None and varies and mesh.speed is None:
+            rule = "is missing: what changes over a mesh period has a mesh frequency"
             raise refuse(rule, at=("mesh", "speed"))
         if self.simulate is not None:
             periods = self.simulate.duration.value * self.mesh_frequency
@@ -176,8 +236,8 @@ class Scene(ProblemFile):
         ratio = self.wheel.base_diameter.value / self.pinion.base_diameter.value
         return float(self.pinion.torque.value * ratio)
 
-    def pair(self, wave: Wave) -> MovingPair:
-        """Return the pair with a wave of stiffness."""
+    def pair(self, wave: Wave, error: tuple[complex, ...] = ()) -> MovingPair:
+        """Return the pair with a wave of stiffness and the error of its teeth, besides its own."""
         mesh = self.mesh
         drive = self.pinion.torque.value if self.pinion.torque else 0.0
         balance = self._balance if self.wheel.torque is None else self.wheel.torque.value
@@ -192,9 +252,12 @@ class Scene(ProblemFile):
             kinematics=mesh.kinematics,
             backlash=None if mesh.backlash is None else mesh.backlash.value,
             mesh_frequency=self.mesh_frequency,
+            error=_error_of(mesh, error),
         )
         damping = damping_of(float(mesh.damping), wave.mean, undamped.mesh_mass)
-        return MovingPair(**{**undamped.__dict__, "damping": damping})
+        if mesh.damping_acts == "always":
+            return replace(undamped, drag=damping)
+        return replace(undamped, damping=damping)
 
     @property
     def mesh_frequency(self) -> float:
@@ -207,6 +270,18 @@ class Scene(ProblemFile):
         """Module of the teeth [mm]: base pitch over pi cos(alpha)."""
         radius = 0.5 * self.pinion.base_diameter.value
         return float(2.0 * radius / (self.mesh.teeth * math.cos(self.mesh.pressure_angle.value)))
+
+    @property
+    def toothing(self) -> Toothing:
+        """Teeth of ISO 53 without profile shift, with the contact ratio of the file's `duty`."""
+        mesh, module = self.mesh, self.module
+        ratio = self.wheel.base_diameter.value / self.pinion.base_diameter.value
+        width = mesh.face_width.value if mesh.face_width else None
+        rack = Rack(pressure_angle=mesh.pressure_angle.value)
+        numbers = module, mesh.teeth, mesh.teeth * ratio, width or module
+        gears = GearPair.of_teeth(*numbers, rack=rack)
+        overlap = 1.0 + float(mesh.duty) if mesh.duty else contact_path(gears).transverse_ratio
+        return Toothing(gears, float(overlap), width, mesh.accuracy_grade)
 
     @property
     def task(self) -> Task:
@@ -243,7 +318,23 @@ class Scene(ProblemFile):
             backlash=None if mesh.backlash is None else mesh.backlash.value,
             elements=asked.elements,
             periods=asked.periods,
+            always=mesh.damping_acts == "always",
         )
+
+
+def _growth(pair: MovingPair) -> float:
+    """By how much the centre distance grows at rest under the load [mm]."""
+    u, v = static(pair).apart
+    start = pair.rest.centre_distance
+    return math.hypot(start + u, v) - start
+
+
+def _stiffer(pair: MovingPair, times: float) -> MovingPair:
+    """Return a pair whose bearings are so many times as stiff."""
+    rotors = [
+        replace(r, stiffness=(times * r.stiffness[0], times * r.stiffness[1])) for r in pair.rotors
+    ]
+    return replace(pair, pinion=rotors[0], wheel=rotors[1])
 
 
 def _rotor(table: RotorTable, torque: float) -> Rotor:
@@ -254,6 +345,13 @@ def _rotor(table: RotorTable, torque: float) -> Rotor:
     return Rotor(
         0.5 * table.base_diameter.value, mass, table.inertia.value, (along, across), damping, torque
     )
+
+
+def _error_of(mesh: MeshTable, teeth: tuple[complex, ...]) -> tuple[complex, ...]:
+    """Return a_h - i b_h [mm] of cosines a and sines b, and of the teeth."""
+    rows = zip_longest(mesh.error_cosines, mesh.error_sines)
+    given = [complex(a.value if a else 0.0, -b.value if b else 0.0) for a, b in rows]
+    return tuple(a + b for a, b in zip_longest(given, teeth, fillvalue=0.0))
 
 
 def fourier_of(mesh: MeshTable) -> Wave:

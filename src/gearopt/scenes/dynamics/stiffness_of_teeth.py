@@ -1,15 +1,28 @@
-"""A file of kind pair as the mesh of a moving pair: its stiffness, and that both are one pair."""
+"""A file of kind pair as the mesh of a moving pair: stiffness and error; both are one pair."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from statistics import mean
+from typing import Any, NamedTuple
 
 from gearopt.errors import SceneError
-from gearopt.formulations.dynamics.parts import nearest_load, of_contact
+from gearopt.formulations.drive.design import drive_design
+from gearopt.formulations.dynamics.design import Columns
+from gearopt.formulations.dynamics.orbit.task import MICRO
+from gearopt.formulations.dynamics.parts import (
+    Contact,
+    error_harmonics,
+    nearest_load,
+    of_contact,
+    unloaded_error,
+)
+from gearopt.formulations.dynamics.standard_factors import Toothing
 from gearopt.formulations.pair.design import ContactLoad, PairContact, PairRelief
+from gearopt.formulations.pair.flank_design import FlankContact, FlankLoad
 from gearopt.optimise.typed import typed
 from gearopt.physics.motion.stiffness_wave import Wave
 from gearopt.scenes.dynamics.handed_on import rotors_of
-from gearopt.scenes.dynamics.scene import Scene
+from gearopt.scenes.dynamics.scene import Scene, wave_of
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.handed_on import same, text_of
 from gearopt.scenes.reading.linked_files import Input
@@ -19,30 +32,97 @@ GEOMETRY = (  # that both files have
     *(("pinion", "base_diameter"), ("wheel", "base_diameter")),
 )
 NEAR = 0.01  # relative, of normal forces that are one
+ERROR_HARMONICS = 40  # of a transmission error
+Error = tuple[complex, ...]
+Load = ContactLoad | FlankLoad
+HELICAL = (
+    "The gears are helical: the motion is that of their transverse plane. Axial forces and motion, "
+    "and tilting, are left out."
+)
 
 
-def of_teeth(scene: Scene, ask: Ask) -> tuple[Wave, list[str]]:
-    """Return the stiffness by the file of [mesh] pair, with its relief; and what is assumed of it.
+class OfTeeth(NamedTuple):
+    """What a pair's teeth give: stiffness, transmission error, themselves; and what is assumed."""
+
+    wave: Wave
+    error: Error
+    teeth: Toothing
+    assumed: list[str]
+
+
+def of_teeth(scene: Scene, ask: Ask) -> OfTeeth:
+    """Return stiffness, error and teeth of the file of [mesh] pair, with its relief.
+
+    The stiffness is the file's own where its wave is not "pair".
 
     SceneError where that pair has other teeth than the file.
     """
     assert scene.mesh.pair is not None and scene.pinion.torque is not None
     named = scene.mesh.pair.answered(ask)
     design = named.result(ask).design
-    if "contact" not in design:
-        rule = "has its contact by slices of the face: the mesh stiffness is taken from spur pairs"
-        tell = "Take the file of a spur pair without a table [flank]"
-        raise SceneError(named.file, "", "", rule, tell)
-    contact: PairContact = typed(PairContact, design["contact"], "contact")
     if others := list(_others(scene, named, ask)):
         rule = f"has other teeth than this file: {'; '.join(others)}"
         raise SceneError(named.file, "", "", rule, "Write those of the pair's file")
-    held = design.get("relief")
-    relief: PairRelief | None = typed(PairRelief, held, "relief") if held else None
+    flanks = _flanks(design)
+    contact, unloaded = flanks.contact, (0.0,) * len(flanks.unloaded)
     force = 2.0 * scene.pinion.torque.value / scene.pinion.base_diameter.value
-    loads = contact.loads if relief is None else relief.at
-    load = nearest_load([one for one in loads if one.normal_force_N], force)
-    return of_contact(contact, load), list(_assumed(str(named), load, force, relief is not None))
+    load = nearest_load([each for each in flanks.loads if each.normal_force_N], force)
+    error, said = Error(), list[str]()
+    if scene.mesh.transmission_error == "pair":
+        unloaded, quasistatic = flanks.unloaded, scene.mesh.wave == "constant"
+        curve = load.transmission_error_mm if quasistatic else unloaded
+        error = error_harmonics(contact, curve, ERROR_HARMONICS)
+        said.append(_of_error(str(named), quasistatic, load, max(curve) - min(curve)))
+    if scene.mesh.wave == "pair":
+        wave = of_contact(contact, load, unloaded)
+        said += _assumed(str(named), load, force, flanks.modified)
+    else:
+        wave = wave_of(scene.mesh)
+    gears = drive_design(design).stages[0].pair
+    if gears.pinion.helix_angle:
+        said.append(HELICAL)
+    ratio = contact.contact_ratio + float(gears.overlap_ratio)
+    numbers = ratio, float(gears.face_width), scene.mesh.accuracy_grade, flanks.relief
+    return OfTeeth(wave, error, Toothing(gears, *numbers), said)
+
+
+class _Flanks(NamedTuple):
+    """Contact of a pair, its loads, unloaded errors and mean tip relief [mm]; if it is modified."""
+
+    contact: Contact
+    loads: Sequence[Any]
+    unloaded: Columns
+    relief: float
+    modified: bool
+
+
+def _flanks(design: dict[str, Any]) -> _Flanks:
+    """The flanks of a pair as they are, with their relief; by slices of the face or without."""
+    if "flank" in design:
+        flank: FlankContact = typed(FlankContact, design["flank"], "flank")
+        modified = max(flank.unloaded_error_mm) > 0.0 or any(flank.relief_mm)
+        return _Flanks(flank, flank.loads, flank.unloaded_error_mm, mean(flank.relief_mm), modified)
+    contact: PairContact = typed(PairContact, design["contact"], "contact")
+    held = design.get("relief")
+    if held is None:
+        return _Flanks(contact, contact.loads, unloaded_error(contact, None), 0.0, False)
+    relief: PairRelief = typed(PairRelief, held, "relief")
+    tips = mean((relief.pinion.amount_mm, relief.wheel.amount_mm))
+    return _Flanks(contact, relief.at, unloaded_error(contact, relief), tips, True)
+
+
+def _of_error(name: str, quasistatic: bool, load: Load, height: float) -> str:
+    """Say which transmission error of a file excites the mesh."""
+    most = f"{MICRO * height:.3g} µm peak to peak, its first {ERROR_HARMONICS} harmonics"
+    if quasistatic:
+        return (
+            f"The transmission error is that of {name} at {100.0 * load.load:.4g} % of that file's "
+            f"torque, {most}: as the mesh stiffness is constant, it stands for its variation, too."
+        )
+    return (
+        f"The transmission error is that of the unloaded teeth of {name}, {most}: the least relief "
+        "of the pairs in contact. The deformation under load is not in it, but in the stiffness."
+    )
 
 
 def _others(scene: Scene, named: Input, ask: Ask) -> Iterator[str]:
@@ -55,7 +135,7 @@ def _others(scene: Scene, named: Input, ask: Ask) -> Iterator[str]:
             yield f"[{table}] {name} is {is_its}"
 
 
-def _assumed(name: str, load: ContactLoad, force: float, relieved: bool) -> Iterator[str]:
+def _assumed(name: str, load: Load, force: float, relieved: bool) -> Iterator[str]:
     """Yield at which load the stiffness is taken."""
     flanks = "with its relief" if relieved else "whose flanks have no relief"
     yield (

@@ -13,6 +13,8 @@ from gearopt.units import Quantity
 
 AXES = ("fixed", "line", "plane")
 WAVES = ("constant", "rectangle", "trapezoid", "fourier", "pair")
+DAMPING = ("in_contact", "always")
+ERRORS = ("harmonics", "pair")
 MOST_OUTPUTS = 20001
 SHARE = number(0.03, 0, 1, percent=True, zero=True)
 SPEEDS = span(quantity("speed", "1500 rpm"), ["1500 rpm", "6000 rpm"])
@@ -88,10 +90,30 @@ class MeshTable(Table):
         several(quantity("stiffness", "20 kN/mm", signed=True), ["20 kN/mm"], in_order=True),
     ] = Field((), description="Fourier series: amplitudes of the sines")
     pair: Annotated[Input | None, result_of("pair")] = Field(
-        None, description="File of kind pair, or its kept result, whose teeth give the stiffness"
+        None,
+        description="File of kind pair, or its kept result, whose teeth give the stiffness, the "
+        "transmission error, or both",
     )
+    transmission_error: Annotated[str, choice(*ERRORS)] = Field(
+        "harmonics",
+        description="Transmission error that excites the mesh: that of its harmonics below, or "
+        "that of the file of kind pair, and those besides",
+    )
+    error_cosines: Annotated[
+        tuple[Quantity, ...],
+        several(quantity("length", "2 um", signed=True), ["2 um"], in_order=True),
+    ] = Field((), description="Transmission error: amplitudes of its cosines")
+    error_sines: Annotated[
+        tuple[Quantity, ...],
+        several(quantity("length", "2 um", signed=True), ["2 um"], in_order=True),
+    ] = Field((), description="Transmission error: amplitudes of its sines")
     damping: Annotated[Fraction, SHARE] = Field(
         Fraction(0), description="Damping ratio of the mesh on both inertias"
+    )
+    damping_acts: Annotated[str, choice(*DAMPING)] = Field(
+        "in_contact",
+        description="When the mesh damps: while teeth are in contact, or always, also while they "
+        "are apart, as Kahraman and Singh have it",
     )
     backlash: Annotated[Quantity | None, quantity("length", "0.1 mm", zero=True)] = Field(
         None,
@@ -99,6 +121,12 @@ class MeshTable(Table):
         "spring that also pulls, and separation is only reported",
     )
     teeth: Annotated[int, whole(30, 5, 2000)] = Field(description="Teeth of the pinion")
+    face_width: Annotated[Quantity | None, quantity("length", "20 mm")] = Field(
+        None, description="Face width, for K_v of ISO 6336 and AGMA; by default that of `pair`"
+    )
+    accuracy_grade: Annotated[int | None, whole(6, 0, 12, scale=True)] = Field(
+        None, description="Accuracy grade of ISO 1328-1 of both gears, for K_v of ISO 6336 and AGMA"
+    )
     speed: Annotated[Quantity | None, quantity("speed", "2000 rpm")] = Field(
         None, description="Speed of the pinion, which sets the mesh frequency"
     )

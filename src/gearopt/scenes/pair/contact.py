@@ -166,8 +166,8 @@ def models_of(scene: Scene, elastic: ElasticPair) -> tuple[str, str | Quantity]:
     """Return level and coupling that a file asks for, or whose errors it bears.
 
     Of a relief, where it says nothing on either, the finest ones: what is best by a model that is
-    off is not the best of the gears. Of helical gears, whose errors are known with it, the coupling by
-    finite elements where they are installed.
+    off is not the best of the gears. Of helical gears the coupling by finite elements, with which
+    their errors are known, where they are installed.
     """
     asked = scene.sharing
     if asked.error is not None and asked.coupling is None and not scene.helical:

@@ -122,6 +122,7 @@ def flank_contact_of(
         path_mm=column(mesh.path_columns),
         place_mm=column(face.places),
         travel_mm=column(mesh.cycle.travels * path.base_pitch),
+        unloaded_error_mm=column(mesh.separated(mesh.reliefs).min(axis=(-2, -1))),
         loads=loads,
         validity=(*beyond, *yielding(most)),
     )

@@ -231,6 +231,10 @@ DYNAMICS = {
     "inertia, in [pinion] and [wheel]": "j mass_moment_of_inertia moment_of_inertia",
     "pressure_angle, in [mesh]": "alpha alpha_n",
     "backlash, in [mesh]": "clearance play",
+    "face_width, in [mesh]": "width b",
+    "accuracy_grade, in [mesh]": "quality accuracy iso_grade quality_grade",
+    "error_cosines, in [mesh]": "transmission_error_cosines te static_transmission_error",
+    "error_sines, in [mesh]": "transmission_error_sines",
 }
 KINDS = {
     "drive": "gearbox gear_unit transmission reducer speed_reducer gear_reducer gear gears "

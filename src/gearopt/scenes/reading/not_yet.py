@@ -182,12 +182,10 @@ NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
         "helix_angle beta": "The teeth are straight. Nearest: face_width of [gears]",
     },
     "dynamics": {
-        "module helix_angle face_width profile_shift number_of_teeth": "Nearest: pair of [mesh], a "
+        "module helix_angle profile_shift number_of_teeth": "Nearest: pair of [mesh], a "
         "file of kind pair, whose teeth give the stiffness; or stiffness and wave of [mesh]",
         "friction friction_coefficient": "Friction of teeth is not modelled. Nearest: damping of "
         "[mesh]",
-        "transmission_error static_transmission_error": "The mesh is excited by its stiffness "
-        "alone. Nearest: wave of [mesh]",
         "dt step time_step": "Nearest: error of [simulate], which sets the steps",
     },
 }

@@ -127,8 +127,8 @@ class _Balance:
         pair, h = self.pair, self.harmonics
         side = np.zeros(2 * h + 1, complex)
         side[h] = -pair.load / pair.wave.mean
-        for n, a in enumerate(pair.error[:h], 1):
-            side[h + n] = side[h - n] = 0.5 * a
+        for n, e in enumerate(pair.error[:h], 1):
+            side[h + n], side[h - n] = 0.5 * e, 0.5 * np.conj(e)
         return side
 
     @cached_property
@@ -199,7 +199,7 @@ def states(pair: MovingPair, level: str, made: Orbit, count: int) -> Array:
     omegas = 2.0 * math.pi * made.frequency * np.arange(1, harmonics + 1)
     moved, ahead = _moved(pair, level, omegas)
     force = made.harmonics[1:].copy()
-    shaken = np.array(pair.error[:harmonics], float)
+    shaken = np.array(pair.error[:harmonics], complex)
     force[: shaken.size] -= 0.5 * shaken
     half = np.zeros((harmonics + 1, n), complex)
     half[1:] = -moved * (force / ahead)[:, None]

@@ -205,8 +205,8 @@ KIND = np.dtype([(name, np.int64) for name in WHOLE] + [(name, np.float64) for n
 class Numbers(NamedTuple):
     """A pair at a level, for kernels, with the units of `MovingPair`.
 
-    pair (1,): a record of WHOLE and REAL, `level`: how many coordinates. waves (3, H): cosines and
-    sines of the mesh stiffness [N/mm], and what the error's cosines add to delta'' [mm/s2].
+    pair (1,): a record of WHOLE and REAL, `level`: how many coordinates. waves (4, H): cosines and
+    sines of the mesh stiffness [N/mm], and of what the error adds to delta'' [mm/s2].
     """
 
     pair: NDArray[np.void]
@@ -231,9 +231,10 @@ def numbers(pair: MovingPair, level: str) -> Numbers:
         *(p.base_radius, w.base_radius, p.inertia, w.inertia, p.torque, w.torque, omega),
     )
     cosines, errors = pair.wave.cosines, pair.error
-    waves = np.zeros((3, max(len(cosines), len(errors))))
+    waves = np.zeros((4, max(len(cosines), len(errors))))
     waves[0, : len(cosines)], waves[1, : len(cosines)] = cosines, pair.wave.sines
-    waves[2, : len(errors)] = [-a * (h * omega) ** 2 for h, a in enumerate(errors, 1)]
+    shaken = np.array([-e * (h * omega) ** 2 for h, e in enumerate(errors, 1)], complex)
+    waves[2:, : len(errors)] = shaken.real, -shaken.imag
     return Numbers(np.array([values], dtype=KIND), waves)
 
 

@@ -55,9 +55,9 @@ def waves(m, w, t):
     k, shake = 0.0, 0.0
     for h in range(w.shape[1]):
         angle = (h + 1) * m.omega * t
-        cosine = math.cos(angle)
-        k += w[0, h] * cosine + w[1, h] * math.sin(angle)
-        shake += w[2, h] * cosine
+        cosine, sine = math.cos(angle), math.sin(angle)
+        k += w[0, h] * cosine + w[1, h] * sine
+        shake += w[2, h] * cosine + w[3, h] * sine
     return k, shake
 
 

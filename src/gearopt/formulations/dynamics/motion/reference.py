@@ -151,4 +151,7 @@ def _shaken(pair: MovingPair, t: Any) -> Any:
     import casadi as ca
 
     omega = 2.0 * math.pi * pair.mesh_frequency
-    return sum(-a * (h * omega) ** 2 * ca.cos(h * omega * t) for h, a in enumerate(pair.error, 1))
+    return sum(
+        -((h * omega) ** 2) * (e.real * ca.cos(h * omega * t) - e.imag * ca.sin(h * omega * t))
+        for h, e in enumerate(pair.error, 1)
+    )

@@ -63,7 +63,7 @@ class Moving:
     backlash: float
     width: Any
     axes: Sequence[tuple[Any, Any, Any]] = ()
-    drag: float = 0.0
+    drag: Any = 0.0
     shaken: Callable[[Any], Any] | None = None
 
     @property

@@ -96,7 +96,8 @@ def moving(task: Task, stiffness: Any, made: Parts, width: Any) -> Moving:
     held = zip(made.masses, made.bearing_damping, strict=True)
     axes = [(mass, stiffness, damping) for mass, damping in held]
     backlash = MICRO * task.backlash
-    return Moving(made.mesh_mass, task.load, made.mesh_damping, backlash, width, axes)
+    damping, drag = (0.0, made.mesh_damping) if task.always else (made.mesh_damping, 0.0)
+    return Moving(made.mesh_mass, task.load, damping, backlash, width, axes, drag)
 
 
 def problem(task: Task, methods: dict[str, Any] | None = None) -> Problem:

@@ -27,7 +27,8 @@ class Task:
     the teeth from parting, None: not asked. most_growth: of the largest Floquet multiplier over all
     speeds, None: not asked. measure: "rms" or "peak_to_peak" of delta. harmonics of a motion whose
     teeth stay in contact. backlash [mm]: teeth may part; then motions are collocated in so many
-    elements of a mesh period, and repeat after so many periods. None: a linear mesh.
+    elements of a mesh period, and repeat after so many periods. None: a linear mesh. always: the
+    mesh damps teeth that are apart, too.
     """
 
     torque: float
@@ -50,6 +51,7 @@ class Task:
     backlash: float | None = None
     elements: int = 24
     periods: int = 1
+    always: bool = False
 
     @property
     def load(self) -> float:
@@ -181,13 +183,15 @@ def pair_of(task: Task, point: Sequence[float] | Array, speed_rpm: float) -> Mov
     ]
     fits = min(ramp, ratio - 1.0, 2.0 - ratio)  # limits are met to 1e-8
     wave = of_contact_ratio(float(built.single), ratio, fits)
+    damping = damping_of(task.mesh_damping, wave.mean, float(built.mesh_mass))
     return MovingPair(
         rotors[0],
         rotors[1],
         task.pressure_angle,
         wave,
         task.teeth * speed_rpm / 60.0,
-        damping=damping_of(task.mesh_damping, wave.mean, float(built.mesh_mass)),
+        damping=0.0 if task.always else damping,
+        drag=damping if task.always else 0.0,
         backlash=task.backlash,
         kinematics="tangent",
     )

@@ -6,7 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.dynamics.design import DynamicsDesign, Speeds
+from gearopt.formulations.dynamics.design import (
+    OUT_OF_MESH,
+    DynamicsDesign,
+    Response,
+    Speeds,
+    StandardFactors,
+)
 from gearopt.formulations.dynamics.motion.stability import UNSTABLE
 from gearopt.formulations.dynamics.motions_over_speed import ranges, spans
 from gearopt.optimise.result import Result
@@ -33,6 +39,8 @@ NOT_USED = (
     "not used: those of the answer follow from its sizes."
 )
 HIGHEST = "highest δ, negative in compression"
+BY_ISO, BY_AGMA = "by ISO 6336-1 (method B)", "by AGMA 2001-D04"
+ISO, AGMA = f"K_v {BY_ISO}", f"K_v {BY_AGMA}"
 
 
 def design_of(result: Result) -> DynamicsDesign | None:
@@ -83,6 +91,8 @@ def binding_limit(result: Result, measures: Measures = METRIC) -> str:
         count = len(design.chosen.speed_rpm)
         judged = "1 speed" if count == 1 else f"{count} speeds"
         return f"the objective is the largest value at {judged}; {of_limits(result)}"
+    if design.warnings and design.warnings[0].startswith(OUT_OF_MESH):
+        return "teeth leave mesh under the load, as the axes move apart"
     rest = abs(design.equilibrium.deformation_mm)
     moved = design.response
     at_rest = f"the mean load deforms the mesh by {amount(rest, 'um', measures)}"
@@ -111,14 +121,37 @@ def motion(result: Result, measures: Measures) -> Section | None:
         [f"RMS about the mean [{measures.unit('um')}]", cell(moved.rms_mm, "um", measures)],
         [f"peak to peak [{measures.unit('um')}]", cell(moved.peak_to_peak_mm, "um", measures)],
         [f"{HIGHEST} [{measures.unit('um')}]", cell(moved.highest_mm, "um", measures)],
+        *_loads(moved, design.standard, measures),
     ]
-    table = Table("response", ("", ""), rows, "RMS and peak to peak of the second half.")
+    table = Table("response", ("", ""), rows, "RMS, peak to peak and loads of the second half.")
     moving = [plots.orbit(moved, measures)] if moved.axes_mm else []
     figures = [
         plots.response(moved, measures),
+        *([plots.load(moved, measures)] if moved.load_N else []),
         plots.spectrum(moved, design.mesh_frequency_Hz, measures),
     ]
-    return Section("Motion", animations=moving, figures=figures, tables=(table,), terminal=(table,))
+    words = [design.standard.missing] if design.standard and design.standard.missing else []
+    return Section(
+        "Motion",
+        words=words,
+        animations=moving,
+        figures=figures,
+        tables=(table,),
+        terminal=(table, *words),
+    )
+
+
+def _loads(
+    moved: Response, standard: StandardFactors | None, measures: Measures
+) -> list[list[Any]]:
+    """Rows of the tooth load and its dynamic factor, with K_v of the standards beside."""
+    if moved.tooth_load is None:
+        return []
+    rows = names_and_values(moved.tooth_load, measures)
+    known = standard or StandardFactors()
+    for name, value in ((ISO, known.own_iso), (AGMA, known.own_agma)):
+        rows += [] if value is None else [[name, value]]
+    return rows
 
 
 def stability(result: Result, measures: Measures) -> Section | None:
@@ -139,11 +172,17 @@ def stability(result: Result, measures: Measures) -> Section | None:
     heads = ("modes", "harmonic", "mesh frequency [Hz]", "half width [%]", "damping against it [%]")
     table = Table("tongues", heads, rows, "Widest instability tongues by the first-order formulas.")
     ends = f"{spans(held.bands_Hz)} Hz" if held.bands_Hz else "none"
-    words = (
+    words = [
         f"{held.unstable_percent:.3g} % of the map, at depths from {held.depth[0]:.3g} to "
         f"{held.depth[-1]:.3g}, is unstable. Unstable mesh frequencies at the pair's own depth of "
         f"{held.own_depth:.3g}: {ends}.",
-    )
+    ]
+    if held.error is not None:
+        step = held.frequency_Hz[1] - held.frequency_Hz[0]
+        words.append(
+            f"Multipliers are known to {held.error:.1e}, ends of ranges to one step of the "
+            f"frequencies, {step:,.3g} Hz.",
+        )
     return Section(
         "Stability",
         words=words,
@@ -158,11 +197,48 @@ def speeds(result: Result, measures: Measures) -> Section | None:
     design = design_of(result)
     if design is None or (held := design.speeds) is None:
         return None
-    figures = (plots.over_speed(held, measures), plots.waterfall(held, measures))
-    words = (_worst(held, measures), *_two(held))
-    return Section(
-        "Speeds", words=words, figures=figures, tables=(_speeds(held, measures),), terminal=words
-    )
+    standard = design.standard or StandardFactors()
+    figures = [plots.over_speed(held, measures), plots.waterfall(held, measures)]
+    figures[1:1] = [plots.dynamic_factors(held, standard)] if held.dynamic_factor else []
+    words = [_worst(held, measures), *_two(held), *_factors(held, standard), *_known_to(held)]
+    table = _speeds(held, standard, measures)
+    return Section("Speeds", words=words, figures=figures, tables=(table,), terminal=words)
+
+
+def _factors(held: Speeds, standard: StandardFactors) -> list[str]:
+    """Say where the dynamic factor is largest, with K_v of the standards there."""
+    ways = held.dynamic_factor, held.falling_dynamic_factor
+    both = [pair for way in ways for pair in zip(way, held.speed_rpm, strict=False)]
+    ends = [(k, n) for k, n in both if k is not None]
+    if not ends:
+        return []
+    most, speed = max(ends)
+    at = held.speed_rpm.index(speed)
+    beside = [
+        f"{values[at]:.4g} {name}"
+        for name, values in ((BY_ISO, standard.iso), (BY_AGMA, standard.agma))
+        if values and values[at] is not None
+    ]
+    tail = f"; K_v there is {' and '.join(beside)}" if beside else ""
+    words = "The dynamic factor, the largest tooth load over the normal load, is up to "
+    words += f"{most:.4g}, at {speed:,.0f} rpm{tail}."
+    return [words, *([standard.missing] if standard.missing else [])]
+
+
+def _known_to(held: Speeds) -> list[str]:
+    """Say the largest estimated errors of the motions that repeat, and of those that do not."""
+    ways = [(held.errors, held.repeats), (held.falling_errors, held.falling_repeats)]
+    every = [(e, r) for way in ways for e, r in zip(*way, strict=False) if e is not None]
+    steady, rest = [e for e, r in every if r], [e for e, r in every if not r]
+    said = []
+    if steady:
+        said.append(
+            f"Estimated error of the deformation, relative to its largest value: up to "
+            f"{max(steady):.1e}."
+        )
+    if rest:
+        said.append(f"RMS of motions that do not repeat vary by up to {max(rest):.1e} of it.")
+    return said
 
 
 def _worst(held: Speeds, measures: Measures) -> str:
@@ -199,27 +275,38 @@ def _two(held: Speeds) -> list[str]:
     ]
 
 
-def _speeds(held: Speeds, measures: Measures) -> Table:
+def _speeds(held: Speeds, standard: StandardFactors, measures: Measures) -> Table:
     """Every speed's motion as a table, of falling speeds beside the rising ones."""
-    micro = measures.unit("um")
+    micro, force = measures.unit("um"), measures.unit("N")
     heads = [f"RMS [{micro}]", f"peak to peak [{micro}]", f"{HIGHEST} [{micro}]", "motion"]
-    rising = held.rms_mm, held.peak_to_peak_mm, held.highest_mm, held.repeats
-    falling = (
-        held.falling_rms_mm,
-        held.falling_peak_to_peak_mm,
-        held.falling_highest_mm,
-        held.falling_repeats,
+    loads = [f"tooth load, {name} [{force}]" for name in ("maximum", "minimum", "RMS")]
+    heads += [*loads, "dynamic factor", "error"] if held.loads_N else []
+    rising = (
+        (held.rms_mm, held.peak_to_peak_mm, held.highest_mm),
+        held.repeats,
+        held.loads_N,
+        (held.dynamic_factor, held.errors),
     )
-    ways = [rising, falling] if held.falling_rms_mm and rising != falling else [rising]
+    falling = (
+        (held.falling_rms_mm, held.falling_peak_to_peak_mm, held.falling_highest_mm),
+        held.falling_repeats,
+        held.falling_loads_N,
+        (held.falling_dynamic_factor, held.falling_errors),
+    )
+    ways = [rising, falling] if held.falling_rms_mm and rising[:2] != falling[:2] else [rising]
+    names = heads if len(ways) == 1 else [f"{h}, {w}" for w in ("rising", "falling") for h in heads]
+    beside = [(n, v) for n, v in ((ISO, standard.iso), (AGMA, standard.agma)) if v]
     rows: list[list[Any]] = []
     for k, speed in enumerate(held.speed_rpm):
         row: list[Any] = [speed]
-        for rms, height, highest, repeats in ways:
-            row += [cell(values[k], "um", measures) for values in (rms, height, highest)]
-            row.append(_said(repeats[k], highest[k]))
-        rows.append(row)
-    names = heads if len(ways) == 1 else [f"{h}, {w}" for w in ("rising", "falling") for h in heads]
-    return Table("motions over speed", ("speed [rpm]", *names), rows, folded=True)
+        for sizes, repeats, forces, numbers in ways:
+            row += [cell(values[k], "um", measures) for values in sizes]
+            row.append(_said(repeats[k], sizes[2][k]))
+            row += [cell(values[k], "N", measures) for values in forces]
+            row += [values[k] for values in numbers if values]
+        rows.append(row + [values[k] for _, values in beside])
+    heads = ["speed [rpm]", *names, *(name for name, _ in beside)]
+    return Table("motions over speed", tuple(heads), rows, folded=True)
 
 
 def _said(repeats: int, highest: float | None) -> str:

@@ -6,7 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.dynamics.design import Chosen, Response, Speeds, Stability
+from gearopt.formulations.dynamics.design import (
+    Chosen,
+    Response,
+    Speeds,
+    Stability,
+    StandardFactors,
+)
 from gearopt.formulations.dynamics.motion.stability import UNSTABLE, bands
 from gearopt.report.drawing.player import Animation, Body, Reading, View
 from gearopt.report.drawing.sheet import Sheet, Window, around, series
@@ -44,6 +50,36 @@ def response(motion: Response, measures: Measures) -> Figure:
     caption = "Deformation of the mesh, negative under compression; above the line teeth part."
     follows = ORBIT if motion.axes_mm else ""
     return Figure([line(motion.time_ms, micro)], plot, caption, follows=follows)
+
+
+def load(motion: Response, measures: Measures) -> Figure:
+    """Plot the load on the teeth over time."""
+    force = measures.unit("N")
+    values = [float(f"{measures.of(v, 'N'):.6g}") for v in motion.load_N]
+    plot = layout(axis("time [ms]"), axis(f"tooth load [{force}]"), HEIGHT, hovermode="x")
+    plot["shapes"] = [_across(0.0)]
+    caption = "Load on the teeth: zero while they are apart, negative on the coast flank."
+    return Figure([line(motion.time_ms, values)], plot, caption)
+
+
+def dynamic_factors(speeds: Speeds, standard: StandardFactors) -> Figure:
+    """Plot the dynamic factor over speed, with K_v of the standards."""
+    falling = speeds.falling_dynamic_factor or speeds.dynamic_factor
+    two = falling != speeds.dynamic_factor
+    name = "motion, speed rising" if two else "motion"
+    curves = [(name, speeds.dynamic_factor, "solid")]
+    curves += [("motion, speed falling", falling, "dash")] if two else []
+    curves += [("K_v, ISO 6336-1", standard.iso, "dot")] if standard.iso else []
+    curves += [("K_v, AGMA 2001-D04", standard.agma, "dashdot")] if standard.agma else []
+    traces = [
+        line(speeds.speed_rpm, values, called, k, dash)
+        for k, (called, values, dash) in enumerate(curves, 1)
+    ]
+    ends = axis("dynamic factor", rangemode="tozero")
+    plot = layout(axis("speed of the pinion [rpm]", tickformat=","), ends, HEIGHT, hovermode="x")
+    plot["margin"] |= {"t": 44}
+    caption = "Dynamic factor over speed: the largest tooth load over the normal load"
+    return Figure(traces, plot, caption + (", beside K_v." if len(curves) > 1 + two else "."))
 
 
 def spectrum(motion: Response, mesh_frequency: float, measures: Measures) -> Figure:
