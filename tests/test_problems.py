@@ -74,6 +74,7 @@ LONG = (
         "same_materials",
     ),
     "wind_gearbox",
+    "relief_two_loads",
     "planetary_or_parallel",
     "idler",
     "planetary_gearhead",

@@ -408,6 +408,7 @@ def test_stages_of_one_file_are_told_apart(kept, drive):
         assert contact["loads"][0]["normal_force_N"] == pair["loads"][0]["normal_force_N"]
 
 
+@pytest.mark.slow
 def test_a_source_is_solved_once_with_the_budget_of_the_asker(kept, monkeypatch):
     solved, budgets = Kind.solve, []
 
@@ -423,6 +424,7 @@ def test_a_source_is_solved_once_with_the_budget_of_the_asker(kept, monkeypatch)
     assert budgets == [20.0]
 
 
+@pytest.mark.slow
 def test_numbers_of_the_file_itself_are_explained(kept):
     changes = {"relief.loads": [1]}
     explained = gearopt.explain(PAIR, changes, budget=gearopt.Budget(5))

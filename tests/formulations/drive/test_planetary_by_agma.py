@@ -32,6 +32,7 @@ def test_drives_with_a_planetary_stage_are_those_of_every_candidate(seed, monkey
     agree_by(own.some_planetary_drive(seed, 2), bool(seed % 2), monkeypatch)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("held", "helix"), few([(held, helix) for held in HELD for helix in (0.0, 0.2, 0.45)], 1)
 )

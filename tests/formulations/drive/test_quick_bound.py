@@ -143,7 +143,7 @@ def test_no_row_costs_less_than_its_cell(seed):
     assert np.all(least_beside_rows(seed, 60 if seed < 3 else 700) >= 1.0 - 1e-11)
 
 
-@pytest.mark.parametrize("seed", few(range(20_000, 20_300), 2))
+@pytest.mark.parametrize("seed", few(range(20_000, 20_300), 1))
 def test_no_row_of_chosen_ways_costs_less_than_its_cell(seed):
     assert np.all(least_beside_rows(seed, 60 if seed < 3 else 700, with_ways) >= 1.0 - 1e-11)
 

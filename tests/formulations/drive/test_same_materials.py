@@ -89,6 +89,7 @@ def test_the_best_of_the_same_materials_are_the_best_of_each():
     assert [value for value, _ in three] == pytest.approx(sorted(by_teeth.values())[:3], rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_stop_leaves_a_bound_of_all_materials():
     """Whenever it ends, its bound is below the best drive of every material."""
     train, (best, _) = replace(small(), same_option=True), best_of_the_same()

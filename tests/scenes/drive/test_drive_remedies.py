@@ -239,6 +239,7 @@ def test_no_ratio_is_told_where_none_is_written_or_time_ran_out():
         assert nearest_ratio(Case(scene, Clock(Budget(seconds=seconds))), None) is None
 
 
+@pytest.mark.slow
 def test_no_number_of_real_valued_sizes_is_tried_once_time_is_over(monkeypatch):
     """Each would take a solution of the continuous problem: some twenty here."""
     scene, asked = gearopt.load("problems/three_stage_small_wheels.toml"), []

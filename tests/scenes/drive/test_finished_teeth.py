@@ -64,6 +64,7 @@ def test_the_rest_of_the_protuberance_enters_the_tooth_form(allowance):
         assert found["Y_S"][tooth["member"]] == pytest.approx(concentration, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_sized_drive_takes_the_rest_of_the_protuberance():
     """It is the drive of a tool with that protuberance, and none larger is asked for."""
     tables = ground(0.02)
@@ -134,6 +135,7 @@ def test_chamfered_teeth_carry_as_shorter_ones_by_agma(helix):
             assert tooth[name] == pytest.approx(short[name], rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("teeth", [{"teeth": {}}, {}])
 def test_a_sized_drive_of_chamfered_teeth_is_that_of_shorter_ones(teeth):
     values = []

@@ -50,6 +50,7 @@ def test_short_lives_follow_the_lowest_curve_of_steel():
         assert found["Z_N"][gear["member"]] == pytest.approx(1.249 * cycles**-0.0138, rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("teeth", [{"teeth": {}}, {}])
 def test_a_sized_drive_of_iron_is_that_of_gears_of_its_strength(teeth):
     """Beyond 1e7 cycles all curves are one, so that steel of these numbers sizes alike."""

@@ -51,6 +51,7 @@ def told(found):
     return screen.export_text(), page(found, "", METRIC)
 
 
+@pytest.mark.slow
 def test_gears_chosen_first_that_do_not_fit_exclude_no_others(sized):
     found = first(sized)
     assert found.status == "infeasible"

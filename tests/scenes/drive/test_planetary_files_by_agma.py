@@ -124,6 +124,7 @@ def test_factors_of_one_mesh_are_not_given_to_two(symbol, place):
         gearopt.rate(WIND, BY_AGMA | {f"{place}.{symbol}": 0.2})
 
 
+@pytest.mark.slow
 def test_limits_of_a_larger_sun_are_those_of_its_rating():
     """18 teeth of the planet, 40 of the sun: used is what S_F and S_H say, gear by gear."""
     changes = SIZED | {"stage[1].sun_teeth": 40, "duty.output_speed": None, "duty.ratio": 3.0}

@@ -37,6 +37,7 @@ def solved(text):
     return gearopt.solve(tomllib.loads(text))
 
 
+@pytest.mark.slow
 def test_factors_of_every_stage_are_those_of_the_rating():
     lines = "overload_factor = 1.5", "minimum_contact_safety = 1.3", "minimum_bending_safety = 5"
     whole = ELEVATOR

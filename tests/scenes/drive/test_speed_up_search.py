@@ -126,6 +126,7 @@ FORCES = {
 }
 
 
+@pytest.mark.slow
 def test_the_least_axial_force_is_that_of_wheels_that_drive():
     """2 T tan(beta)/d with T from the input on, which falls from stage to stage."""
     gears = FORCES["gears"] | {"face_width_over_diameter": [0.3, 1.0]}

@@ -47,6 +47,7 @@ def held_to_files(types, **drive):
     return found
 
 
+@pytest.mark.slow
 def test_the_best_type_is_that_of_separate_files():
     found = held_to_files([["planetary", "parallel"]], pinion_teeth=[32, 32], modules=["2 mm"])
     assert found.design["stages"][0]["type"] == "planetary"

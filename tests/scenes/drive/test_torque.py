@@ -71,6 +71,7 @@ def test_the_remedy_by_ratings_is_the_largest_torque_that_is_possible():
         assert solve({**tables, "duty": duty}, remedies=False).status == status
 
 
+@pytest.mark.slow
 def test_the_volume_goes_as_the_torque_by_a_stress_law():
     slopes = {i.key: i.sensitivity for i in explain(both("elevator")[1]).influences}
     assert slopes["duty.torque"] == pytest.approx(1.0, abs=1e-3)

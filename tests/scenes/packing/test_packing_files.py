@@ -324,6 +324,7 @@ def test_words_of_a_bound_say_where_its_time_ended_it():
     assert "Stopped early: the bound is weaker than it could be." in " ".join(proof(early))
 
 
+@pytest.mark.slow
 def test_nothing_is_posed_for_sensitivities_once_time_is_over(solved, monkeypatch):
     file = "problems/six_cylinders_two_layers.toml"
     result, scene = solved("six_cylinders_two_layers"), gearopt.load(file)
