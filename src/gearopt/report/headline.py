@@ -64,6 +64,8 @@ def _impossible(result: Result) -> str:
         name for name in ways.get("unsure") or result.proof.get("unsure") or () if name in names
     ]
     names = [name for name in names if name not in unsure]
+    if not names and result.message:  # a known cause
+        return result.message.rstrip(".")
     if not names:
         perhaps = f"perhaps because of {_some(result, unsure)} (not decided in the time)"
         return f"no design meets all limits, {perhaps}"

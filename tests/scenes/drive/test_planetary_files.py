@@ -223,6 +223,18 @@ def test_planets_that_do_not_fit_a_given_stage_are_named():
     rated = gearopt.rate(WIND, {"stage[1].planets": 4, "stage[1].mesh_load_factor": 1.25})
     assert not rated.design["rating"]["safe"]
     assert any("multiple of its 4 planets" in text for text in rated.design["rating"]["misfits"])
+    (stage,) = rated.design["stages"]
+    masses = [stage[f"{gear}_mass_kg"] for gear in ("pinion", "wheel", "ring")]
+    assert masses == pytest.approx([379.7, 880.3, 2712.3], rel=1e-3)  # of the report
+    assert "multiple of its 4 planets" in " ".join(str(rated).split())
+
+
+def test_an_order_of_meshes_that_given_teeth_do_not_keep_is_named():
+    order = {"stage[1].mesh_order": "sequential"}  # z_s 18, 3 planets
+    misfits = gearopt.rate(WIND, order).design["rating"]["misfits"]
+    assert any(
+        "mesh_order: it asks for no multiple of 3 planets as z_s" in said for said in misfits
+    )
 
 
 def test_sentences_name_the_gears_of_a_set_and_its_stage():

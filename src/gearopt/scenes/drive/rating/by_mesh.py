@@ -215,7 +215,8 @@ def given_design(scene: Scene) -> DriveDesign:
             continue
         assert own.pinion_teeth and own.wheel_teeth
         teeth = float(own.pinion_teeth[0]), float(own.wheel_teeth[0])
-        pair = option.planets.pair(module, *teeth, 1.0)
+        free = replace(option.planets, spaced=False, order="any")  # `assembly_flaws` says more
+        option, pair = replace(option, planets=free), free.pair(module, *teeth, 1.0)
         span = own.face_width_over_diameter or scene.gears.face_width_over_diameter or (0, 0)
         width = float(span[0]) * float(pair.pinion.reference_diameter)
         rows.append((pair.of_width(fixed.value if fixed else width), option))
@@ -267,7 +268,12 @@ def assembly_flaws(scene: Scene, design: DriveDesign) -> Iterator[Flaw]:
         module = stage.normal_module_mm
         size = stage.sun_teeth, stage.ring_teeth, stage.face_width_mm
         planets = replace(planets_of(scene, own, stage), spaced=asked.spaced)
-        gap = float(planets.gap(planets.pair(module, *size)))
+        pair = planets.pair(module, *size)
+        for rule, kept in asked.rules(pair.pinion_teeth, pair.wheel_teeth):
+            if rule.endswith("(mesh_order)") and not kept:
+                text = f"The teeth of stage {k} do not keep mesh_order: it asks for "
+                yield Flaw("order", f"{text}{rule.removesuffix(' (mesh_order)')}.", misfit=1.0)
+        gap = float(planets.gap(pair))
         if gap < asked.clearance * module:
             text = f"Neighbouring planets of stage {k} are {gap:.3f} mm apart at their tips, below "
             text += f"{asked.clearance:g} m_n."
