@@ -64,8 +64,8 @@ def _impossible(result: Result) -> str:
         name for name in ways.get("unsure") or result.proof.get("unsure") or () if name in names
     ]
     names = [name for name in names if name not in unsure]
-    if not names and result.message:  # a known cause
-        return result.message.rstrip(".")
+    if not names and result.message:
+        return result.message.rstrip(".")  # a known cause
     if not names:
         perhaps = f"perhaps because of {_some(result, unsure)} (not decided in the time)"
         return f"no design meets all limits, {perhaps}"
@@ -79,7 +79,8 @@ def _impossible(result: Result) -> str:
         return result.message.rstrip(".")  # what keeps teeth from it is never dropped whole
     if len(names) == 1 or result.proof.get("each_alone"):
         kept = "with what else the file gives, even if all other limits are dropped"
-        return f"{together} cannot be met {kept}"
+        cause = result.message.rstrip(".") if ways.get("untried") else ""
+        return f"{f'{cause}; ' * bool(cause)}{together} cannot be met {kept}"
     if ways.get("any_resolves"):
         return (
             f"{together} cannot all be met{held}; dropping any one of them makes a design possible"

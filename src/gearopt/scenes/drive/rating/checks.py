@@ -217,6 +217,10 @@ def check_pinion(stage: StageTable, k: int, drives: bool = False, idle: bool = F
     """
     pinion, wheel = stage.pinion_teeth, stage.wheel_teeth
     if pinion and wheel and wheel[1] < pinion[0]:
+        if stage.epicyclic:
+            inner, ring = stage.teeth_keys
+            rule = f"is below {inner}, whose gear runs within the ring"
+            raise refuse(rule, inner, ("stage", k, ring), "swap")
         rule = "is below pinion_teeth: the pinion is the gear with fewer teeth"
         if idle:
             tell = "Rate each mesh as a pair, the idler with reversed_load = true"
