@@ -140,7 +140,14 @@ def test_kinds_of_stages_stand_in_one_drive():
 
 
 WRONG = {
-    "pinion_teeth": ({"pinion_teeth": 20}, "stage[1].pinion_teeth", "Remove it"),
+    "pinion_teeth": ({"pinion_teeth": 20}, "stage[1].pinion_teeth", "Write sun_teeth"),
+    "no planets": ({"planets": 0}, "stage[1].planets", "Write planets = 3"),
+    "small ring": (
+        {"sun_teeth": 60, "ring_teeth": 40},
+        "stage[1].ring_teeth",
+        "is below sun_teeth, whose gear runs within the ring. Exchange stage[1].ring_teeth and "
+        "stage[1].sun_teeth",
+    ),
     "no type": ({"type": "parallel"}, "stage[1].planets", 'type = "planetary"'),
     "nine planets": ({"planets": 9}, "stage[1].mesh_load_factor", "no K_gamma"),
     "reduction": ({"planet_teeth_reduction": [0.3]}, "stage[1].planet_teeth_reduction", "0.5"),
@@ -190,6 +197,15 @@ def test_materials_of_a_ring_are_asked_for_by_its_name():
         ({"stage[1].centre_distance": "90 mm"}, r"of gears that are all given"),
         ({"limits": None}, r"limits: is missing .*sun_teeth.*pinion_teeth = \[12, 40\]"),
         ({"stage[1].type": "Planetenstufe"}, 'Write type = "planetary"'),
+        (
+            {"stage[1].type": None},
+            r'planets = .*: needs type = "planetary"\. Write type = "planetary",',
+        ),
+        (
+            {"limits.ring_teeth": [60, 90]},
+            r"Write ring_teeth, in a \[\[stage\]\], or wheel_teeth in",
+        ),
+        ({"rating.standard": ["agma", "iso6336"]}, r'standard = "both"$'),
         ({"stage[1].annulus_teeth": 80}, r"annulus_teeth = 80: .*Write ring_teeth"),
         (
             {"stage[1].planet": [3, 5], "stage[1].planets": None},

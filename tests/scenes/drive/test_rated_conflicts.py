@@ -115,7 +115,9 @@ def test_a_conflict_of_which_nothing_is_sure_is_said_to_be_open(solved):
     known = replace(result, message="No gears have room.")
     assert lead(known) == "No gears have room"
     alone = replace(known, report={"ways_out": ways | {"unsure": [], "untried": True}})
-    assert lead(alone).startswith("No gears have room; the limit on maximum ratio of stage 1 cannot")
+    assert lead(alone).startswith(
+        "No gears have room; the limit on maximum ratio of stage 1 cannot"
+    )
 
 
 def test_of_many_requirements_that_may_not_matter_some_are_named(solved):

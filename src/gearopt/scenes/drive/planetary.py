@@ -64,6 +64,7 @@ NAMES = {  # of what checks call the gears of a pair
     PLANETARY: {"pinion": "sun", "wheel": "planet", "pinion_teeth": "sun_teeth"},
     INTERNAL: {"wheel": "ring"},
 }
+RING_TEETH = {"wheel_teeth": "ring_teeth"}
 OF_INNER = {"pinion": "planet", "wheel": "ring"}
 OF_MESH = ("I", "K_B", "K_s", "J", "s_at", "s_ac", "Y_N", "Z_N", "C_H")  # given to AGMA
 OF_GEAR = (  # keys of gears that no stage with planets or a ring takes
@@ -84,6 +85,11 @@ def with_gears_named(stages: tuple[StageTable, ...]) -> tuple[StageTable, ...]:
         if name := next((name for name in wrong if name in stage.model_fields_set), None):
             kinds = " or ".join(f'"{kind}"' for kind in stage.types)
             rule = f"needs {_kinds(name)}" if PARALLEL in stage.types else f"is not of {kinds}"
+            if "type" not in stage.model_fields_set:  # it may be forgotten
+                raise refuse(rule, f"Write {_kinds(name)}, or remove it", (k, name), "tell")
+            other = (NAMES.get(stage.type, {}) | RING_TEETH).get(name)
+            if other and PARALLEL not in stage.types and other not in stage.model_fields_set:
+                raise refuse(rule, f"Write {other} in its place", (k, name), "tell")
             raise refuse(rule, at=(k, name), action="remove")
         for name in of_meshes(stage.given_iso6336) if stage.type != PLANETARY else ():
             rule = 'has values of two meshes, which a stage of type = "planetary" has'
@@ -125,7 +131,7 @@ def renamed(scene: "Scene", wrong: PydanticCustomError, names: Any = None) -> Py
     if len(place) > 2 and place[0] == "stage" and place[1] < len(scene.stage):
         kind = scene.stage[place[1]].type
         called = names if names and kind == PLANETARY else NAMES.get(kind, {})
-        called = called | ({"wheel_teeth": "ring_teeth"} if kind in NAMES else {})
+        called = called | (RING_TEETH if kind in NAMES else {})
         context["at"] = (*place[:2], called.get(place[2], place[2]), *place[3:])
     return PydanticCustomError("gearopt", "{rule}", context)
 

@@ -13,6 +13,10 @@ DRIVE = {
     "pinion_teeth and wheel_teeth, in a [[stage]] or [limits]": "stage.teeth limits.teeth "
     "gears.teeth number_of_teeth num_teeth tooth_number tooth_numbers tooth_count zaehnezahl "
     "zaehnezahlen",
+    "sun_teeth, in a [[stage]], or pinion_teeth in [limits]": "limits.sun_teeth",
+    "ring_teeth, in a [[stage]], or wheel_teeth in [limits]": "limits.ring_teeth",
+    "planet_teeth, in a [[stage]]": "limits.planet_teeth",
+    "planets, in a [[stage]]": "limits.planets",
     "module, in a [[stage]] or [limits]": "m m_n normal_module modul normalmodul",
     "diametral_pitch, in a [[stage]]": "p_nd pnd dp normal_diametral_pitch",
     "face_width, in a [[stage]]": "b b1 b2 stage.width tooth_width zahnbreite breite "

@@ -359,7 +359,8 @@ def advised(item: Reads, ways: dict[str, str]) -> Reads:
         try:
             return item.reader(value, example)
         except PydanticCustomError as wrong:
-            text = _beginning(value).strip()
+            several = value[:4] if isinstance(value, list) else [value]
+            text = " ".join(map(_beginning, several)).strip()
             tried = ((re.fullmatch(known, text, re.IGNORECASE), way) for known, way in ways.items())
             if (way := next((fits.expand(way) for fits, way in tried if fits), None)) is None:
                 raise

@@ -22,6 +22,7 @@ TYPE = advised(
     },
 )
 USUAL = (3, 3)  # planets
+PLANETS = advised(whole(3, 1, 12), {"0": "Write planets = 3"})
 REDUCTIONS = (Fraction(0), Fraction(1, 2), Fraction(1))  # by default
 Teeth = tuple[int, int] | None
 
@@ -109,7 +110,7 @@ class PlanetaryKeys(Table):
         "1 + z_r/z_s is that of sun to carrier), carrier (z_r/z_s, sun to ring, turning the other "
         "way) or sun (1 + z_s/z_r, ring to carrier)",
     )
-    planets: Annotated[Teeth, span(whole(3, 1, 12), [3, 5], single=True)] = Field(
+    planets: Annotated[Teeth, span(PLANETS, [3, 5], single=True)] = Field(
         None, description="Number of planets, or a range to choose from; by default 3"
     )
     sun_teeth: Annotated[Teeth, span(whole(21, 5, 1000), [15, 30], single=True)] = Field(

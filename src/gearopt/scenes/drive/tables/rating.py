@@ -108,6 +108,7 @@ STANDARD = advised(
     choice("agma", "iso6336", "both", means={"AGMA": "agma", "ISO 6336": "iso6336"}),
     {
         "din.*": 'DIN 3990 is not supported. Nearest: standard = "iso6336"',
+        ".*(agma.*iso|iso.*agma).*": 'Write standard = "both"',
         "iso.*": 'Write standard = "iso6336"; [rating.iso6336] has its edition',
         ".*agma.*": 'Write standard = "agma"; edition = "D04" or "B88" says which',
     },
