@@ -29,6 +29,7 @@ from gearopt.report.words import (
     objective,
     of_gears_first,
     of_problem_file,
+    own_limits,
     sentence,
     series_of,
     violation_words,
@@ -139,7 +140,7 @@ def limits(result: Result, measures: Measures) -> Section | None:
     """The utilisation of every limit; None without limits."""
     if not result.limits or (result.value is None and not result.given):
         return None
-    stages, rows = limit_rows(result.limits, of_problem_file(result))
+    stages, rows = limit_rows(own_limits(result), of_problem_file(result))
     heads = [
         "utilisation, %",
         *(f"stage {k}" for k in range(1, stages + 1)),

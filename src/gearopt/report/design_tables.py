@@ -9,6 +9,7 @@ from typing import Any
 from gearopt.formulations.drive.design import StageDesign
 from gearopt.formulations.strength.laws import laws
 from gearopt.optimise.result import Result
+from gearopt.physics.planetary.willis import simple_set
 from gearopt.report.measures import DIGITS, Measures, error_of, rounded
 from gearopt.report.section import ABSENT, Cell, Section, Table, Tile, cell, listed_fields, percent
 from gearopt.report.words import EXACT, MODULE, heading, is_module, objective, parted, teeth_of
@@ -23,6 +24,7 @@ STAGE_ROWS = {  # what a key is called, and its unit
     **{key: SIZES[key] for key in AFTER_LIMITS},
 }
 OF_TEETH = {f.name: f.default for f in fields(StageDesign) if f.default is not MISSING}
+DRIVER = "driver"
 OF_FILE = ("helix_angle_deg", "pressure_angle_deg")  # said by the file where stages are alike
 SHARE = "share of the volume, %"
 PAGE_ONLY = {
@@ -37,6 +39,7 @@ MATES = {
     "planetary": ("sun", "planet"),
     "internal": ("pinion", "ring"),
 }
+OF_RINGS = tuple(key for key in SIZES if key.startswith("ring_") and "outside" not in key)
 OF_SETS = "sun_teeth", "planet_teeth"  # the teeth z1 and z2 of planetary stages
 OF_LINES = "sum_of_centre_distances_mm", "total_length_mm"  # of shafts beside each other
 LISTED = {"between": ("from", "to")}  # lists of as many values: what each is called
@@ -89,11 +92,13 @@ def stage_table(
         every_stage = _own_teeth(key, stages) if key in OF_TEETH else all(key in s for s in stages)
         if not (every_stage or key in chosen) or key in OF_SETS:
             continue
+        if key in OF_RINGS and "planetary" not in types(stages):  # the ring is the wheel
+            continue
         label = stage_label(key, measures, types(stages))
         if key == MODULE:
             rows.append([label, *(measures.of_module(s[key]) for s in stages)])
             continue
-        values = [s.get(key, OF_TEETH.get(key)) for s in stages]
+        values = [driving(s) if key == DRIVER else s.get(key, OF_TEETH.get(key)) for s in stages]
         absent = absent or None in values
         rows.append(
             [label, *(Cell(v, ABSENT) if v is None else cell(v, unit, measures) for v in values)]
@@ -105,6 +110,14 @@ def stage_table(
             rows.append([SHARE, *(percent(s[key] / whole) for s in stages)])
     caption = f"{ABSENT}: the gear has none." if absent else ""
     return Table("stages", heads, rows, caption, page_only=[*hidden, SHARE], across=True)
+
+
+def driving(stage: Mapping[str, Any]) -> str:
+    """The gear, or the carrier, that drives a stage."""
+    kind, driver = stage.get("type", "parallel"), str(stage.get(DRIVER, OF_TEETH[DRIVER]))
+    if kind == "planetary":
+        return simple_set(stage["fixed"], driver != "pinion").source
+    return MATES[kind][MATES["parallel"].index(driver)]
 
 
 def _own_teeth(key: str, stages: Sequence[Mapping[str, Any]]) -> bool:
@@ -132,6 +145,8 @@ def stage_label(key: str, measures: Measures, kinds: Collection[str] = ("paralle
         words = f"{words.replace(f'{member} ', '')} of the {' or '.join(named)}"
     elif key == "mass_kg" and {*kinds} != {"parallel"}:
         words = "mass of the gears"
+    elif key == DRIVER and "planetary" in kinds:
+        words = "driving member"
     return f"{words} [{measures.unit(unit)}]" if unit else words
 
 

@@ -11,6 +11,7 @@ from gearopt.report.words import (
     limit_words,
     objective,
     of_problem_file,
+    own_limits,
     sentence,
     series_of,
     share,
@@ -46,7 +47,7 @@ def lead(result: Result, text: str = "") -> str:
 
 def exceeded(result: Result) -> str:
     """The limits that a given design exceeds, in words; "" where it meets all."""
-    over = _over(result.limits, of_problem_file(result)) if result.given else []
+    over = _over(own_limits(result), of_problem_file(result)) if result.given else []
     return f"the given design exceeds {_on(over)}" if over else ""
 
 
@@ -121,7 +122,7 @@ def of_limits(result: Result, shown: Collection[str] = ()) -> str:
     may decide or not.
     """
     left_out = {*GIVEN, *RATIO_ENDS, *shown}
-    limits = {n: u for n, u in result.limits.items() if _stem(n) not in left_out}
+    limits = {n: u for n, u in own_limits(result).items() if _stem(n) not in left_out}
     reached = [n for n, u in limits.items() if u >= 1.0 - REACHED]
     relaxed = next((part.limits for part in result.parts if part.name == "sizing"), {})
     decisive = [n for n in limits if relaxed.get(n, 0.0) >= 1.0 - REACHED] or reached

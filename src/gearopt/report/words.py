@@ -125,6 +125,19 @@ def _stem_words(stem: str) -> str:
     return words if not stem.endswith("_iso") else f"{words} by ISO 6336"
 
 
+def own_limits(result: Result) -> dict[str, float]:
+    """Limits of a result, of a pinion in a ring by the name of the ring."""
+    rings = {
+        f"[{k}]"
+        for k, stage in enumerate(result.design.get("stages", ()), 1)
+        if stage.get("type") == "internal"
+    }
+    return {
+        re.sub("^wheel_", "ring_", name) if name[name.find("[") :] in rings else name: used
+        for name, used in result.limits.items()
+    }
+
+
 def grouped(names: Iterable[str], staged: bool = True) -> list[str]:
     """Limits in words, those of several stages as one: "K-factor of stages 1 and 2"."""
     if not staged:

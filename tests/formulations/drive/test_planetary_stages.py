@@ -247,3 +247,13 @@ def test_a_sun_that_the_casing_holds_is_as_heavy_as_a_ring_that_it_holds():
     meshes = option.standards[0].standard.practice.meshes
     assert reduced_mass(pair, densities, bores, meshes) == pytest.approx(planet)
     assert Practice(meshes=meshes).bending(1.0) == Practice(meshes=(3.0, 1.0)).bending(1.0)
+
+
+@pytest.mark.parametrize("helix", [0.0, 0.2])
+@pytest.mark.parametrize("module", [0.3, 2.75, 32.0])
+def test_gears_at_their_reference_distances_have_no_shift_at_all(module, helix):
+    """z_s + z_p = z_r - z_p: both reference distances are one, x = 0 and k = 0 without rounding."""
+    for teeth in ((30, 30, 90), (27, 33, 93), (31, 53, 137)):
+        sun, planet, ring, _ = Cutting(helix_angle=helix).gears(module, teeth, 10.0)
+        assert [float(gear.profile_shift) for gear in (sun, planet, ring)] == [0.0] * 3
+        assert [float(gear.tip_alteration) for gear in (sun, planet)] == [0.0] * 2

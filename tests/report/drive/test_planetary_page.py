@@ -13,6 +13,7 @@ from read_numbers import repeated
 
 import gearopt
 from gearopt.formulations.drive.design import drive_design
+from gearopt.report.design_tables import stage_table
 from gearopt.report.drawing.drawn_stage import PLATE
 from gearopt.report.drawing.mesh_view import axes, sector
 from gearopt.report.drawing.solid import twist
@@ -20,9 +21,12 @@ from gearopt.report.drawing.stage_gears import meshes, sun_planet_ring
 from gearopt.report.drawing.train_views import views
 from gearopt.report.kinds.drive import planetary
 from gearopt.report.kinds.drive.planetary_solid import _placed
+from gearopt.report.kinds.drive.rating_tables import name
+from gearopt.report.kinds.drive.rating_words import rating_of
 from gearopt.report.measures import METRIC
 from gearopt.report.pages.result import page
 from gearopt.report.shown import table_rows
+from gearopt.report.words import limit_words, own_limits
 
 TEETH = ("sun_teeth", "planet_teeth", "ring_teeth")
 SETS = (  # held member, planets, teeth, further keys
@@ -248,3 +252,37 @@ def test_a_ring_is_drawn_as_its_own_tool_cuts_it():
 def test_a_ring_of_other_diameters_than_its_tool_cuts_is_not_drawn_with_teeth():
     stage = replace(stages()[0], ring_root_diameter_mm=stages()[0].ring_root_diameter_mm + 0.1)
     assert sun_planet_ring(stage) is None and len(meshes(stage)) == 1
+
+
+@cache
+def pinion_in_ring():
+    duty = {"power": "5.5 kW", "input_speed": "1450 rpm"}
+    stage = {"type": "internal", "pinion_teeth": 24, "ring_teeth": 96, "module": "1.5 mm"}
+    rating = {"standard": "iso6336", "life": "20000 h", "iso6336": {"accuracy_grade": 6}}
+    tables = {"gearopt": 1, "kind": "drive", "duty": duty, "rating": rating}
+    tables |= {"stage": [stage | {"face_width": "12 mm"}], "gears": {"treatment": "carburised"}}
+    return gearopt.rate(tables)
+
+
+def test_a_pinion_in_a_ring_has_each_row_once_and_no_wheel():
+    (stage,), rating = pinion_in_ring().design["stages"], rating_of(pinion_in_ring())
+    table = stage_table([stage], METRIC)
+    labels = [str(row[0]).split(" [")[0] for row in table.rows]
+    assert labels.count("mass of the ring") == 1 and "teeth z2 of the ring" in labels
+    assert not {"teeth of the ring z_r", "tip diameter of the ring"} & {*labels}
+    assert "outside diameter of the ring" in labels
+    assert len({*labels}) == len(labels)
+    limits = {limit_words(name) for name in own_limits(pinion_in_ring())}
+    assert limits == {
+        f"{gear} {mode} of stage 1"
+        for gear in ("pinion", "ring")
+        for mode in ("bending", "contact")
+    }
+    assert [name(rating, gear) for gear in rating.gears] == ["pinion", "ring"]
+
+
+def test_what_drives_a_stage_that_increases_the_speed_is_named():
+    """Of held ring, sun and carrier: carrier, carrier and ring; the ring of a pinion in it."""
+    faster = [stage | {"driver": "wheel"} for stage in result().design["stages"]]
+    (row,) = [row for row in stage_table(faster, METRIC).rows if row[0] == "driving member"]
+    assert [cell.text for cell in row[1:]] == ["carrier", "carrier", "ring", "ring"]

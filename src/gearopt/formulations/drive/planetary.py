@@ -86,14 +86,14 @@ class Cutting:
             distance = 0.5 * (reference + inner)
         if total is None:
             working = angle_at_distance(reference, transverse, distance)
-            total = shift_sum(working, sun + planet, pressure, transverse)
+            total = _exact(shift_sum(working, sun + planet, pressure, transverse))
             if self.distance is None:
                 total = np.fmax(total, self._least(SUN, sun) + self._least(PLANET, planet))
         if self.distance is None:
             working = working_pressure_angle(total, sun + planet, pressure, transverse)
             distance = reference * math.cos(transverse) / np.cos(working)
         first, second = self._shares(total, sun, planet)
-        shorter = (distance - reference) / module - first - second
+        shorter = _exact((distance - reference) / module - first - second)
         third = self._inside(module, planet, ring, distance, second)
         tips = shorter, shorter, self._ring_tip(module, planet, ring, distance, second, third)
         rows = zip((sun, planet, -ring), (first, second, third), tips, strict=True)
@@ -139,7 +139,7 @@ class Cutting:
         pressure, transverse = self.angles
         reference = 0.5 * module / math.cos(self.helix_angle) * (ring - planet)
         working = angle_at_distance(reference, transverse, distance)
-        return shift_sum(working, planet - ring, pressure, transverse) - shift
+        return _exact(shift_sum(working, planet - ring, pressure, transverse) - shift)
 
     def _ring_tip(
         self, module: Any, planet: Any, ring: Any, distance: Any, first: Any, second: Any
@@ -402,6 +402,11 @@ class Planets:
             return inner
         part = {"ring": ring, "sun": sun, "carrier": sun + ring}[self.held] / (sun + ring)
         return part * (1.0 / sun + 1.0 / planet + inner)
+
+
+def _exact(value: Any) -> Any:
+    """Shifts and tip alterations [normal modules], of which rounding errors are 0."""
+    return np.where(np.abs(value) < ROUNDING, 0.0, value)[()]
 
 
 def _within(teeth: Any, span: tuple[float, float]) -> Any:

@@ -8,7 +8,7 @@ from typing import Any
 from gearopt.formulations.drive.rating import DriveRating, MeshRating, ToothGeometry
 from gearopt.optimise.result import Result
 from gearopt.physics.gears import MEMBERS
-from gearopt.report.design_tables import design_section, stage_label, types
+from gearopt.report.design_tables import design_section, driving, stage_label, types
 from gearopt.report.kinds.drive.rating_words import FRICTION, ROUNDING, rating_of, safety
 from gearopt.report.measures import Measures
 from gearopt.report.section import ABSENT, Cell, Section, Table, cell, listed_fields, side_by_side
@@ -66,7 +66,7 @@ def names(rating: DriveRating) -> list[str]:
 def name(rating: DriveRating, gear: Any) -> str:
     """The name of a gear of some table, with its stage where there are several."""
     return (
-        gear.member
+        rating.called(gear)
         if len(rating.meshes) == 1
         else f"{rating.called(gear)} {rating.stage_of(gear.stage)}"
     )
@@ -151,7 +151,8 @@ def _mesh_words(rating: DriveRating, stage: Mapping[str, Any], k: int, measures:
         teeth = [stage.get("planet_teeth", teeth[0]), stage["ring_teeth"]]
     parts = [
         f"{rating.titled(k + 1).capitalize()}: {module_words(stage[MODULE], measures)}",
-        f"z {'/'.join(map(number, teeth))}" + (", the wheel drives" if "driver" in stage else ""),
+        f"z {'/'.join(map(number, teeth))}"
+        + f", the {driving(stage)} drives" * ("driver" in stage),
         f"b {size(stage['face_width_mm'], 'mm')}",
         *(f"{m} {size(b, 'mm')}" for m in MEMBERS if (b := stage.get(f"{m}_face_width_mm"))),
         f"a {size(stage['centre_distance_mm'], 'mm')}; contact ratio "
