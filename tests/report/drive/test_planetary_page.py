@@ -22,7 +22,7 @@ from gearopt.report.drawing.train_views import views
 from gearopt.report.kinds.drive import planetary
 from gearopt.report.kinds.drive.planetary_solid import _placed
 from gearopt.report.kinds.drive.rating_tables import name
-from gearopt.report.kinds.drive.rating_words import rating_of
+from gearopt.report.kinds.drive.rating_words import life_governed, rating_of
 from gearopt.report.measures import METRIC
 from gearopt.report.pages.result import page
 from gearopt.report.shown import table_rows
@@ -255,10 +255,10 @@ def test_a_ring_of_other_diameters_than_its_tool_cuts_is_not_drawn_with_teeth():
 
 
 @cache
-def pinion_in_ring():
+def pinion_in_ring(life="20000 h"):
     duty = {"power": "5.5 kW", "input_speed": "1450 rpm"}
     stage = {"type": "internal", "pinion_teeth": 24, "ring_teeth": 96, "module": "1.5 mm"}
-    rating = {"standard": "iso6336", "life": "20000 h", "iso6336": {"accuracy_grade": 6}}
+    rating = {"standard": "iso6336", "life": life, "iso6336": {"accuracy_grade": 6}}
     tables = {"gearopt": 1, "kind": "drive", "duty": duty, "rating": rating}
     tables |= {"stage": [stage | {"face_width": "12 mm"}], "gears": {"treatment": "carburised"}}
     return gearopt.rate(tables)
@@ -279,6 +279,15 @@ def test_a_pinion_in_a_ring_has_each_row_once_and_no_wheel():
         for mode in ("bending", "contact")
     }
     assert [name(rating, gear) for gear in rating.gears] == ["pinion", "ring"]
+
+
+def test_a_life_beyond_the_end_of_the_curves_is_no_failure():
+    """1e10 cycles are 114,942 h at 1450 per minute."""
+    short, long = (rating_of(pinion_in_ring(life)) for life in ("20000 h", "175200 h"))
+    assert short.safe and long.safe and short.gears[0].life_h is long.gears[0].life_h is None
+    assert life_governed(short) == "pinion, beyond 1e10 cycles"
+    assert "life lies farther and is rated at the strength of that end" in life_governed(long)
+    assert "with its curve extended" in life_governed(replace(long, by="AGMA"))
 
 
 def test_what_drives_a_stage_that_increases_the_speed_is_named():

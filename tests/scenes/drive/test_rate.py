@@ -101,6 +101,18 @@ def test_a_centre_distance_sets_the_working_angle_and_backlash():
     assert mesh["circumferential_backlash_mm"] == pytest.approx(opening, rel=1e-9)
 
 
+def test_a_pair_that_one_of_two_standards_finds_unsafe_is_not_safe():
+    coarse = {"standard": "both", "iso6336": {"accuracy_grade": 10}}
+    found = rated(pair(coarse))
+    agma, iso = (min(g["contact_safety"] for g in r["gears"]) for r in (found, found["beside"]))
+    assert agma > iso
+    between = {"minimum_contact_safety": round(0.5 * (agma + iso), 3)}
+    result = gearopt.rate(pair(coarse | between))
+    rating = result.design["rating"]
+    assert not result.feasible and not rating["safe"] and not rating["beside"]["safe"]
+    assert "safe by AGMA alone" in str(result)
+
+
 @pytest.mark.parametrize("standard", ["agma", "both"])
 def test_gears_that_do_not_fit_are_not_safe(standard):
     """In 119.6 mm instead of 120: 2 a_w (inv(alpha_w) - inv(alpha)) is -0.287 mm."""

@@ -341,8 +341,13 @@ def hours(value: float) -> str:
 def life_governed(rating: DriveRating) -> str:
     """The gear that governs the life of a drive, and that its curve ends there, if it does."""
     gear = rating.shortest_lived
-    beyond = f", beyond {LONGEST_LIFE} cycles" if gear.life_h is None else ""
-    return f"{gear_words(rating, gear)}{beyond}"
+    if gear.life_h is not None:
+        return gear_words(rating, gear)
+    beyond = f"{gear_words(rating, gear)}, beyond {LONGEST_LIFE} cycles"
+    if rating.known_life_h(gear) >= rating.required_life_h:
+        return beyond
+    rated = "with its curve extended" if rating.by == "AGMA" else "at the strength of that end"
+    return f"{beyond}, where life curves end; the required life lies farther and is rated {rated}"
 
 
 def unverified(rating: DriveRating) -> list[str]:

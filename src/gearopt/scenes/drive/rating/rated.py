@@ -315,7 +315,8 @@ def rating(
     first, *others = (
         _by(scene, pairs, standard, names) for standard in map(by, STANDARDS[scene.rating.standard])
     )
-    first = replace(first, beside=others[0]) if others else first
+    if others:  # safe by both, as the verdict of the whole rating
+        first = replace(first, beside=others[0], safe=first.safe and others[0].safe)
     tables = [
         gear_tables(own, scene.gears, scene.material, k, of_stage)
         for k, (own, of_stage) in enumerate(zip(scene.stage_tables, names, strict=True))
