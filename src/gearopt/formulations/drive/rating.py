@@ -207,9 +207,9 @@ class DriveRating:
     too, and the gears fit. life_h: that of the `shortest_lived` gear, None beyond the end of its
     curve. unverified: symbols of factors, and what else no second source has. misfits: sentences
     on gears that cannot be assembled or cannot run. flaws: on what a designer may accept, and on
-    the ratio of given gears that is not the one asked for. by: the standard in short; beside: the rating by another one.
-    static: of every gear under a peak torque.
-    idlers: stages whose pinion is the wheel of the stage before, one gear in two meshes. named: of
+    the ratio of given gears that is not the one asked for. by: the standard in short; beside: the
+    rating by another one. static: of every gear under a peak torque. idlers: stages whose pinion
+    is the wheel of the stage before, one gear in two meshes. named: of
     drives with planets or rings, of every mesh, which its rows then count in place of stages.
     """
 
