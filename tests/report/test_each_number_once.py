@@ -137,6 +137,10 @@ def _of(status, limits, value=1.0, **more):
             "the given design exceeds the limit on a by 25 %",
         ),
         (_of("limit", {}, None), "the budget ended: no design was found, which does not prove"),
+        (
+            _of("limit", {}, None, message="the search was interrupted"),
+            "the search was interrupted: no design was found, which does not prove",
+        ),
         (_of("failed", {}, None), "the search ended: no design was found"),
         (_of("optimal", {}), "no limit is active at the optimum"),
         (_of("infeasible", {}, None, message="no train fits."), "no train fits"),

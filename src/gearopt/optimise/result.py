@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 FORMAT = 1
 MAXIMISE = "maximise"
 CLOSED_FORM = "Proof: the optimum in closed form, and a lower bound that follows from convexity."
+INTERRUPTED = "was interrupted"  # message of a search that its watcher ended
 THERE = ("optimal", "stationary", "feasible")  # a design exists
 STATUSES = ("optimal", "stationary", "feasible", "evaluated", "infeasible", "limit", "failed")
 FEASIBLE = 1e-8  # of its own scale a variable, of 1 a row is off; that is below any data error

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Mapping, Sequence
 
-from gearopt.optimise.result import Result
+from gearopt.optimise.result import INTERRUPTED, Result
 from gearopt.report.measures import rounded
 from gearopt.report.words import (
     INVERSE,
@@ -52,6 +52,8 @@ def exceeded(result: Result) -> str:
 
 
 def _stopped(result: Result) -> str:
+    if INTERRUPTED in result.message:
+        return f"the search {INTERRUPTED}"
     return "the budget ended" if result.status == "limit" else "the search ended"
 
 

@@ -18,7 +18,7 @@ from gearopt.report.drawing.drawn_stage import PLATE
 from gearopt.report.drawing.mesh_view import axes, sector
 from gearopt.report.drawing.solid import twist
 from gearopt.report.drawing.stage_gears import meshes, sun_planet_ring
-from gearopt.report.drawing.train_views import views
+from gearopt.report.drawing.train_views import section, views
 from gearopt.report.kinds.drive import planetary
 from gearopt.report.kinds.drive.planetary_solid import _placed
 from gearopt.report.kinds.drive.rating_tables import name
@@ -295,3 +295,13 @@ def test_what_drives_a_stage_that_increases_the_speed_is_named():
     faster = [stage | {"driver": "wheel"} for stage in result().design["stages"]]
     (row,) = [row for row in stage_table(faster, METRIC).rows if row[0] == "driving member"]
     assert [cell.text for cell in row[1:]] == ["carrier", "carrier", "ring", "ring"]
+
+
+def test_a_set_alone_has_one_axis_whose_position_is_no_choice():
+    first, *_, inner = result().design["stages"]
+    alone, pair = (
+        section(replace(result(), design=result().design | {"stages": [stage]}), METRIC)
+        for stage in (first, inner)
+    )
+    assert "plane" not in alone.heading + " ".join(alone.words)
+    assert "Both shafts are drawn in one plane" in pair.words[0]

@@ -253,6 +253,12 @@ def test_an_order_of_meshes_that_given_teeth_do_not_keep_is_named():
     )
 
 
+def test_a_search_that_is_interrupted_without_a_design_asks_for_no_more_time():
+    stopped = gearopt.solve(STAGE, watch=lambda event: False)
+    assert stopped.status == "limit" and stopped.message == "the search was interrupted"
+    assert "budget" not in str(stopped) and "more time" not in str(stopped)
+
+
 def test_sentences_name_the_gears_of_a_set_and_its_stage():
     changes = {"stage[1].face_width": "1100 mm", "stage[1].planet.profile_shift": 0.6}
     rating = gearopt.rate(WIND, changes | {"stage[1].planet.bore": "760 mm"}).design["rating"]

@@ -65,15 +65,17 @@ def section(result: Result, measures: Measures, hint: str = "") -> Section | Non
     total = f" (the total length of the design is {unfolded}over reference circles)"
     total = ", outside diameters of rings" if rings else total
     plural = f"modules {sign} in {unit}" if unit == "mm" else f"{name}es {sign} in {unit}"
+    plane = f"shafts are drawn in one plane{lie}: their positions are not optimised{gaps}.{hint}"
+    of_one_axis = single and picked[0].is_set
     words = (
-        f"{'Both' if single else 'All'} shafts are drawn in one plane{lie}: their positions are "
-        f"not optimised{gaps}.{hint}",
+        *([] if of_one_axis else [f"{'Both' if single else 'All'} {plane}"]),
         f"Drawn to one scale; dimensions in {measures.lengths}: centre distances, length over "
         f"tip circles{total}, face widths b; {plural}; teeth z. Solid lines are tip circles, "
         f"dash-dotted ones reference circles{inside}; numbers in circles name the shafts, which "
         f"are not drawn.{NOT_SIZED.format(plates) * rings}",
     )
-    return Section("Gears with all shafts in one plane", words=words, drawings=drawn)
+    heading = "Gears on their axis" if of_one_axis else "Gears with all shafts in one plane"
+    return Section(heading, words=words, drawings=drawn)
 
 
 def beside(

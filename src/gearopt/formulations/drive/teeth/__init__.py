@@ -28,7 +28,7 @@ from gearopt.formulations.drive.train import Stage, Train
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.pareto.posed import caps
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Outcome, Watch
+from gearopt.optimise.result import INTERRUPTED, Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms, Var, each, namespace
 from gearopt.physics.gears import GearPair, reference_diameter
 
@@ -296,7 +296,7 @@ def _front(train: Train, problem: Problem, budget: Budget, watch: Watch | None) 
         proof={"method": method, "sentence": words if points or not finished else NO_TRAIN},
         others=tuple(points[1:]),
         evaluations=run.clock.evaluations,
-        message="" if finished else "allow more time",
+        message="" if finished else INTERRUPTED if run.clock.refused else "allow more time",
     )
 
 
@@ -399,7 +399,8 @@ def _distances(stage: Stage) -> str:
 def _why(progress: Progress, count: int) -> str:
     """Reason why a search ended before it was complete, and its consequence for the list."""
     if not progress.found:
-        return "the search stopped before a train was found: allow more time"
+        why = "stopped before a train was found: allow more time"
+        return f"the search {INTERRUPTED if progress.clock.refused else why}"
     unknown = "" if math.isfinite(progress.bound) else "; no lower bound is known yet"
     why = f"the search stopped before it was complete{unknown}"
     why = "the requested gap is reached" if progress.enough else why
