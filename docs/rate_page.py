@@ -207,7 +207,8 @@ Gears that are safe by AGMA may not be so by ISO 6336: small through-hardened on
 is printed: `iso_tr_6336_30.toml` and `wind_pair.toml`.
 
 - By both, the pair is safe if every safety factor of either standard is met; the first sentence
-  says by which it is. The table of gears has both beside each other, factors a table each. `limits`
+  says by which it is. So is `design.rating.safe` of `--json`; `beside.safe` is that of ISO 6336
+  alone. The table of gears has both beside each other, factors a table each. `limits`
   holds those of ISO as `pinion_bending_iso[1]` and so on.
 - Symbols are those of ISO: sigma_F and sigma_H against the tooth root and pitting stress limits
   sigma_FG and sigma_HG (permissible are sigma_FP and sigma_HP, those over the required safety

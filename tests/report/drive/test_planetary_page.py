@@ -303,5 +303,5 @@ def test_a_set_alone_has_one_axis_whose_position_is_no_choice():
         section(replace(result(), design=result().design | {"stages": [stage]}), METRIC)
         for stage in (first, inner)
     )
-    assert "plane" not in alone.heading + " ".join(alone.words)
+    assert "in one plane" not in alone.heading + " ".join(alone.words)
     assert "Both shafts are drawn in one plane" in pair.words[0]
