@@ -227,11 +227,30 @@ def _check_given(scene: "Scene", stage: StageTable, k: int) -> None:
                 raise refuse(rule, at=(*place, symbol), action="remove")
 
 
+def _with_room(scene: "Scene", stage: StageTable) -> int:
+    """How many planets have room, by reference circles; 0 where the stage has no ratio asked.
+
+    Pi/N above asin(z_p/(z_s + z_p)), z_p = (z_r - z_s)/2.
+    """
+    if len(scene.stage) > 1 or not scene.duty.asks_ratio:
+        return 0
+    asked = float(max(scene.duty.total_ratio, 1 / scene.duty.total_ratio))
+    if stage.held != "carrier":  # z_r/z_s of the ratio, or z_s/z_r
+        asked -= 1.0
+    asked = max(asked, 1.0 / asked) if asked > 0.0 else 1.0
+    return 0 if asked == 1.0 else math.floor(math.pi / math.asin((asked - 1.0) / (asked + 1.0)))
+
+
 def _check_teeth(scene: "Scene", stage: StageTable, k: int) -> None:
     """Refuse numbers of planets without K_gamma, and reductions that leave no whole teeth."""
     if stage.mesh_load_factor is None:
         for count in stage.counts if stage.type == PLANETARY else ():
             if count and count not in SHARING_RULES[SHARING].values:
+                if 3 <= (most := _with_room(scene, stage)) < count:
+                    rule = (
+                        f"has no room at the ratio asked: about {most} have, by reference circles"
+                    )
+                    raise refuse(rule, most, ("stage", k, "planets"))
                 rule = f"is missing: {count} planets have no K_gamma by default"
                 raise refuse(rule, 1.1, ("stage", k, "mesh_load_factor"), "sample")
         of_all = scene.rating and scene.rating.iso6336.given.factors().get("K_gamma")
