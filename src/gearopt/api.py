@@ -469,7 +469,7 @@ def _unchanged(problem: Problem | Conic, changes: Changes) -> None:
 def _opened_for(
     what: File, changes: Changes, ask: Ask
 ) -> tuple[BaseModel, Kind[Any], dict[str, Any], Ask]:
-    """Return what `_opened` does, and what is left to ask once its gears are known."""
+    """As `_opened`, and what is left to ask once its gears are known."""
     begun = time.perf_counter()
     scene, kind, names = _opened(what, changes, ask.beforehand)
     spent = time.perf_counter() - begun if inputs_of(scene) else 0.0

@@ -58,7 +58,7 @@ class Face:
         return cycle(whole, steps, also=inner)
 
     def parts(self, path: ContactPath, middles: Any) -> tuple[Any, Any]:
-        """Return what part of each slice is in contact, and the position of its middle [mm].
+        """Part of each slice that is in contact, and the position of its middle [mm].
 
         middles (...) of lines, NaN where there is none; answers (..., count), positions on the path
         also where nothing touches.

@@ -93,7 +93,7 @@ class FlankMesh:
         return Springs(self.compliances.contact / length, bed, links, self.sliced.coupling)
 
     def separated(self, reliefs: tuple[Relief, Relief]) -> Array:
-        """Return what lacks to contact of unloaded slices [mm] (..., p, n, m) with tip reliefs.
+        """Gaps of unloaded slices [mm] (..., p, n, m) with tip reliefs.
 
         Infinite where none is; reliefs of pinion and wheel, of arrays (N,) for N designs.
         """

@@ -61,7 +61,7 @@ class Sliced:
         return np.clip(other.start + share * other.length, other.start, other.end)
 
     def compliances(self, positions: Any) -> "Slices":
-        """Return what slices give way at transverse positions s [mm] on the path."""
+        """Compliances of slices at transverse positions s [mm] on the path."""
         at = self.in_normal_section(positions)
         wide = float(self.pair.face_width) / self.cosine
         lines = self.normal.load_lines(at)

@@ -82,9 +82,9 @@ def _handed(source: Input, number: int | None, ask: Ask, whole: bool) -> HandedO
     _add_duty(drive, stages, slower, whole, tables, follows)
     used = set[str]()
     for at, k in enumerate(places):
-        own = drive.stage_tables[k]
-        tables["stage"].append(_stage(drive, own, design.stages[k], used))
-        follows |= _known(drive, own, k, design.stages[k], at)
+        table = drive.stage_tables[k]
+        tables["stage"].append(_stage(drive, table, design.stages[k], used))
+        follows |= _known(drive, table, k, design.stages[k], at)
     _add_rating(drive, slower, tables, follows, used)
 
     def own_key(place: Place) -> bool:
@@ -180,12 +180,12 @@ def _sizes(stage: StageDesign) -> dict[str, Any]:
     }
 
 
-def _stage(drive: Any, own: StageTable, stage: StageDesign, used: set[str]) -> dict[str, Any]:
+def _stage(drive: Any, asked: StageTable, stage: StageDesign, used: set[str]) -> dict[str, Any]:
     """The table of a stage; used: names of materials, to which its own are added."""
-    table = {k: v for k, v in content(own, False).items() if k in KEPT} | _sizes(stage)
-    if own.pinion.face_width or own.wheel.face_width:
-        table["face_width"] = own.face_width
-    elif excess := own.pinion_face_width_excess or drive.gears.pinion_face_width_excess:
+    table = {k: v for k, v in content(asked, False).items() if k in KEPT} | _sizes(stage)
+    if asked.pinion.face_width or asked.wheel.face_width:
+        table["face_width"] = asked.face_width
+    elif excess := asked.pinion_face_width_excess or drive.gears.pinion_face_width_excess:
         table["pinion_face_width_excess"] = excess
     if stage.working_pressure_angle_deg is None:
         del table["centre_distance"]
@@ -197,14 +197,14 @@ def _stage(drive: Any, own: StageTable, stage: StageDesign, used: set[str]) -> d
             gear.pop(name, None)
             if value := getattr(stage, f"{member}_{name}"):
                 gear[name] = Fraction(value)
-        if known := names(getattr(own, member), drive.gears):
+        if known := names(getattr(asked, member), drive.gears):
             gear["materials"] = [getattr(stage, f"{member}_material") or known[0]]
             used.update(gear["materials"])
         table[member] = gear
     return {name: value for name, value in table.items() if value is not None}
 
 
-def _known(drive: Any, own: StageTable, k: int, stage: StageDesign, at: int) -> dict[Place, Any]:
+def _known(drive: Any, asked: StageTable, k: int, stage: StageDesign, at: int) -> dict[Place, Any]:
     """What is known of a stage (from 0), which stands at a place of the file that takes it."""
     m, b, d = stage.normal_module_mm, stage.face_width_mm, stage.pinion_diameter_mm
     values = _sizes(stage) | {"type": "parallel", "idler": False}
@@ -212,11 +212,11 @@ def _known(drive: Any, own: StageTable, k: int, stage: StageDesign, at: int) -> 
     values["face_width_over_diameter"] = Fraction(b / d)
     values["face_width_over_module"] = Fraction(b / m)
     for name in OF_STAGE if drive.rating is not None else ():
-        value = getattr(own, name)
+        value = getattr(asked, name)
         values[name] = getattr(drive.rating, name) if value is None and name != "shaft" else value
     held: dict[Place, Any] = {("stage", at, name): value for name, value in values.items()}
     chosen = stage.pinion_material, stage.wheel_material
-    tables = gear_tables(own, drive.gears, drive.material, k, chosen)
+    tables = gear_tables(asked, drive.gears, drive.material, k, chosen)
     for member, gear in zip(MEMBERS, tables, strict=True):
         rows = {n: USUAL.get(n) if value is None else value for n, value in gear}
         rows |= {name: Fraction(getattr(stage, f"{member}_{name}")) for name in SHIFTS}

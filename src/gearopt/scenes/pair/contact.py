@@ -183,7 +183,7 @@ def models_of(scene: Scene, elastic: ElasticPair) -> tuple[str, str | Quantity]:
 
 
 def coupling_name(coupling: str | Quantity) -> str:
-    """Return what a coupling is called: a model, or given as a number."""
+    """Name of a coupling: its model, or that it is given as a number."""
     return coupling if isinstance(coupling, str) else "given"
 
 

@@ -151,7 +151,7 @@ def with_fewer_first(scene: Scene, pairs: tuple[GearPair, ...], names: Materials
     return scene.model_copy(update={"stage": tuple(tables)}), tuple(both), materials
 
 
-def sun_first(mesh: Mesh, pair: GearPair, own: AsMesh | None) -> Mesh:
+def sun_first(mesh: Mesh, pair: GearPair, as_mesh: AsMesh | None) -> Mesh:
     """A rated mesh with its gears in the order of a pair, which it was rated in or turned."""
     if mesh.pair.pinion.teeth == pair.pinion.teeth:
         return mesh
@@ -169,8 +169,8 @@ def sun_first(mesh: Mesh, pair: GearPair, own: AsMesh | None) -> Mesh:
         bending_safety=mesh.bending_safety[::-1],
         contact_safety=mesh.contact_safety[::-1],
         damages=None if damages is None else (damages[0][::-1], damages[1][::-1]),
-        grown=lambda factor: sun_first(mesh.grown(factor), pair, own),
-        own=own,
+        grown=lambda factor: sun_first(mesh.grown(factor), pair, as_mesh),
+        own=as_mesh,
     )
 
 

@@ -76,14 +76,14 @@ def _as_taken(pairs: Sequence[GearPair], gears: Gears) -> tuple[GearPair, ...]:
         return tuple(pairs)
     stages = drive_design(source.result(Ask()).design).stages
     chosen = stages if number is None else stages[number - 1 :]
-    made = []
+    bodied = []
     for pair, stage in zip(pairs, chosen, strict=False):
         rows = zip(pair.gears, stage.bodies, strict=True)
         first, second = (
             g if d == g.reference_diameter else replace(g, body_diameter=d) for g, d in rows
         )
-        made.append(GearPair(first, second, pair.working_distance))
-    return tuple(made)
+        bodied.append(GearPair(first, second, pair.working_distance))
+    return tuple(bodied)
 
 
 def blanks(tables: Tables, pair: GearPair) -> Blanks:
