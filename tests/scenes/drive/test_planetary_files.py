@@ -149,8 +149,12 @@ WRONG = {
         "stage[1].sun_teeth",
     ),
     "no type": ({"type": "parallel"}, "stage[1].planets", 'type = "planetary"'),
-    "nine planets": ({"planets": 9}, "stage[1].planets = 9", "about 4 have"),  # 180/asin(3.25/5.25)
-    "nine given": ({"planets": [8, 9]}, "stage[1].planets = [8, 9]", "Write planets = 4"),
+    "nine planets": (
+        {"planets": 9},
+        "stage[1].planets = 9",
+        "about 4 do by",
+    ),  # 180/asin(3.25/5.25)
+    "up to eight": ({"planets": [3, 8]}, "stage[1].planets = [3, 8]", "Write planets = [3, 4]"),
     "reduction": ({"planet_teeth_reduction": [0.3]}, "stage[1].planet_teeth_reduction", "0.5"),
     "idler": ({"centre_distance": "80 mm"}, "stage[1].centre_distance", "follows from"),
     "ring": ({"ring": {"profile_shift": 0.1}}, "stage[1].ring.profile_shift", "follows from"),

@@ -247,10 +247,9 @@ def _check_teeth(scene: "Scene", stage: StageTable, k: int) -> None:
         for count in stage.counts if stage.type == PLANETARY else ():
             if count and count not in SHARING_RULES[SHARING].values:
                 if 3 <= (most := _with_room(scene, stage)) < count:
-                    rule = (
-                        f"has no room at the ratio asked: about {most} have, by reference circles"
-                    )
-                    raise refuse(rule, most, ("stage", k, "planets"))
+                    rule = f"{count} have no room at this ratio, about {most} do by their circles"
+                    write = [stage.counts[0], most] if stage.counts[0] < most else most
+                    raise refuse(rule, write, ("stage", k, "planets"))
                 rule = f"is missing: {count} planets have no K_gamma by default"
                 raise refuse(rule, 1.1, ("stage", k, "mesh_load_factor"), "sample")
         of_all = scene.rating and scene.rating.iso6336.given.factors().get("K_gamma")
