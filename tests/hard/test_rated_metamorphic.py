@@ -48,6 +48,7 @@ def test_more_power_never_takes_less(seed, standard):
         value = more
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", few([1, 0, *range(2, 12)], 1))
 def test_stronger_steel_never_takes_more(seed):
     train = some_rated_drive(4000 + seed)

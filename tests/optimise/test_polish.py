@@ -224,6 +224,7 @@ def test_a_simulation_is_polished_without_derivatives_and_its_failed_points_are_
     assert re.search(r"\d+ of \d+ points failed: OverflowError: no step at a = ", result.message)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", SAMPLERS)
 def test_seconds_end_between_two_points_of_a_population_and_slow_points_are_kept(method):
     asked = []

@@ -371,6 +371,7 @@ def test_files_that_need_each_other_are_refused(kept):
         gearopt.load(kept / "one.toml")
 
 
+@pytest.mark.slow
 def test_another_power_moves_all_three(kept, drive):
     """A chain of files: of the stronger drive pair and dynamics have the larger load."""
     (kept / "pair.toml").write_text(

@@ -72,6 +72,7 @@ def test_the_best_toothing_is_that_of_all_of_them(options, angles, face):
     assert found == pytest.approx(list(product(*angles))[int(np.argmin(each))])
 
 
+@pytest.mark.slow
 def test_a_list_of_trains_has_every_train_with_its_best_toothing():
     made = rated_drive(3, [FREE], options=by("agma"), pinion_teeth=(17, 19))
     found = values(cut(made, SPUR_TOO), 5)

@@ -79,6 +79,7 @@ def test_the_shortest_box_comes_first_where_length_is_an_objective():
     )
 
 
+@pytest.mark.slow
 def test_largest_sides_cut_the_front_and_impossible_ones_are_proven():
     made = front(("width", "height"), 3, {"height": 380.0})
     assert made.values[:, 1].max() <= 380.0 * (1 + 1e-7)

@@ -136,6 +136,7 @@ def test_a_front_that_is_stopped_is_not_complete():
     assert not made.complete and not made.finished
 
 
+@pytest.mark.slow
 def test_a_search_for_the_least_utilisation_that_is_stopped_proves_its_bound():
     train, names = drive(**SMALL), ("gear_volume", load_front.UTILISATION)
     problem, bounds = load_front.problem(train, names), []

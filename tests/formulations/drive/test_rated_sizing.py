@@ -71,6 +71,7 @@ def test_a_published_pair_of_least_volume(monkeypatch):
     assert found.gap < 0.05
 
 
+@pytest.mark.slow
 def test_nothing_is_traced_for_ipopt_when_time_is_over(monkeypatch):
     """What it would be given are starts; with seconds they are tried."""
     train, tried = replace(published_pair(), objective="mass", density=7.85e-9), []

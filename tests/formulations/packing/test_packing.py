@@ -149,6 +149,7 @@ def best(plan, **kind):
     return solve(packing.problem(plan), "hop", **kind)
 
 
+@pytest.mark.slow
 def test_layers_of_six_cylinders_are_proven():
     """Two layers 40 x 20 x 20, three 20 x (15 + sqrt 200) x 30."""
     two, three = (

@@ -191,6 +191,7 @@ def some(seed):
     return Stack(tuple(found), tuple(budgets))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", few(range(40), 3))
 def test_random_stacks_by_three_solvers(seed):
     tolerances = some(seed)

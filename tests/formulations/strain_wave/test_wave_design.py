@@ -110,6 +110,7 @@ def test_other_deflections_of_one_flank():
         assert 1e3 * interference(stretched(made, w), 0.1).gap == pytest.approx(gap, abs=6e-3)
 
 
+@pytest.mark.slow
 def test_the_least_pressure_of_the_base_case():
     """92.568 MPa by another program with a smoothed limit at poses of 0.25 degrees."""
     found = exchange(DEMAND, np.array(STARTS[0]), Clock())

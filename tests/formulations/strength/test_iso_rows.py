@@ -237,6 +237,7 @@ def test_no_width_of_a_box_carries_where_levels_use_more_than_1(kind):
     assert (found <= 1.0).any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", few(SPECTRA, ["endless levels"]))
 def test_the_first_width_under_levels_carries_and_none_below_it(kind):
     standard, pair, width, torque, power, _ = nearly_used_up(kind, 10)

@@ -78,6 +78,7 @@ def test_the_page_is_made_in_either_system(solved, measures):
     assert "Contact over the flank" in html and "Teeth in mesh" not in html
 
 
+@pytest.mark.slow
 def test_no_load_at_all_is_said():
     file = tomllib.loads(KIND.example.text)
     file |= {"gears": {"helix_angle": "15 deg"}, "sharing": {"loads": [0]}}

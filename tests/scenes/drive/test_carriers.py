@@ -29,6 +29,7 @@ def test_a_given_stage_weighs_more_by_its_cheeks(solved):
     assert carried["rating"]["gears"] == plain["rating"]["gears"]
 
 
+@pytest.mark.slow
 def test_the_stage_of_least_volume_is_that_with_its_carrier():
     found = gearopt.solve(STAGE, {KEY: 0.6})
     (stage,) = found.design["stages"]

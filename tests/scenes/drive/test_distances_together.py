@@ -51,6 +51,7 @@ def test_the_best_distances_are_those_of_each_row_alone(tmp_path, alone, limit, 
     assert goes(*chosen) and alone[chosen] == pytest.approx(least, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_layout_puts_the_output_of_a_coaxial_drive_in_line_with_the_input(tmp_path):
     layout = '\n[layout]\nshaft_stress = "40 MPa"\nspan = "partial"\n'
     file = written(tmp_path, asked("coaxial = true") + layout)

@@ -108,6 +108,7 @@ def test_a_design_that_a_front_has_not_is_one_clear_error(rated_front, tmp_path,
         assert said.returncode == 2 and words in said.stderr and said.stderr.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_fronts_without_a_rating_are_refused():
     train = gearopt.pareto(
         PROBLEMS / "sandgren_train.toml", objectives="squared_error,largest_gear"

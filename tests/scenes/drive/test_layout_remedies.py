@@ -363,6 +363,7 @@ def test_random_impossible_layouts_get_remedies_that_are_least(seed):
     assert_least(found, content)
 
 
+@pytest.mark.slow
 def test_compiling_kernels_takes_no_time_of_the_remedies(monkeypatch):
     """On a machine's first use compiling takes longer than a question may."""
     scene, _ = scene_of(BARE + FAR)

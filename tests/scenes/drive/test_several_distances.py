@@ -18,6 +18,7 @@ LIST = '["112 mm", "118 mm", "125 mm"]'
 SERIES = '{ from = "110 mm", to = "130 mm", series = "R40" }'
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("several", few([SERIES, LIST], 1))
 def test_the_best_distance_and_helix_are_those_of_each_alone(tmp_path, several):
     chosen = FEW.replace('"125 mm"', several).replace('"12 deg"', '["0 deg", "12 deg"]')

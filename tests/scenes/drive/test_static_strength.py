@@ -60,6 +60,7 @@ def test_a_static_safety_factor_that_is_missed_is_told():
     assert "Static strength" in result.to_html()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sizes", [{"teeth": {"modules": ["4 mm"]}}, {}])
 def test_sizes_are_limited_by_static_strength(sizes):
     """Stresses fall with the root of b: S_H = 2.1 asks for 40 mm (2.1/1.915)^2 at u = 3.
