@@ -76,18 +76,16 @@ def rated(name, quality=None, grade=None):
 
 
 def least(name, quality=None, grade=None):
-    """Of both standards: least S_F, least S_H, what governs, power [kW], whether safe."""
-    found = rated(name, quality, grade)
-    return [
-        (
-            min(gear["bending_safety"] for gear in one["gears"]),
-            min(gear["contact_safety"] for gear in one["gears"]),
-            one["governs"],
-            one["power_capacity_kW"],
-            one["safe"],
+    """Of both standards: least S_F, least S_H, what governs, power [kW], whether both reach 1."""
+    found, rows = rated(name, quality, grade), []
+    for each in (found, found["beside"]):
+        root, flank = (
+            min(gear[f"{mode}_safety"] for gear in each["gears"]) for mode in ("bending", "contact")
         )
-        for one in (found, found["beside"])
-    ]
+        rows.append(
+            (root, flank, each["governs"], each["power_capacity_kW"], min(root, flank) >= 1.0)
+        )
+    return rows
 
 
 def rated_rows():
