@@ -7,7 +7,7 @@ from agma_cases import digits, printed
 from gearopt.physics.iso6336.factors import CLAUSES
 from gearopt.physics.iso6336.materials import LINES, MATERIALS
 from gearopt.physics.iso6336.refusals import SENTENCES
-from gearopt.physics.planetary.loads import SHARING_RULES, mesh_load_factor
+from gearopt.physics.planetary.loads import MESH_LOAD_FACTORS
 
 HEAD = """\
 # Rating by ISO 6336
@@ -337,26 +337,26 @@ the printed reports take the larger of both for both.
 The operation of a mesh is that of one planet against the carrier: F_t is T/(N r) without K_gamma,
 load cycles (`contacts`) are N a relative turn for sun and ring, one a flank for a planet, whose
 `reversed_load` gives Y_M = 0.7. K_gamma is given (`given={"K_gamma": 1.1}`; else it is 1 and
-*unverified*), or follows from the number of planets by a rule that is named (`mesh_load_factor`):
+*unverified*); where a file gives none it follows from the number of planets (`MESH_LOAD_FACTORS`,
+*wind*); other rules stand beside:
 
 """
-SOURCES = {
-    "wind": "a public program; 1.10 is printed, too",
-    "class society": "a vendor's help on the rules of one, recomputed",
-    "square root": "memory: 1 + 0.25 sqrt(N - 3)",
-}
+SHARING_RULES = (
+    ("class society", "1", "1.2", "1.3", "1.4", "1.4", "a vendor's help on the rules of one"),
+    ("square root", "1", "1.25", "1.354", "1.433", "1.5", "1 + 0.25 sqrt(N - 3): *unverified*"),
+)
 EXAMPLE = """
 ```python
 from dataclasses import replace
 
 from gearopt.physics.gears import Cutter
-from gearopt.physics.planetary.loads import mesh_load_factor
+from gearopt.physics.planetary.loads import MESH_LOAD_FACTORS
 
 ring = GearPair.internal(3.0, 33, -87, 30.0, cutter=Cutter(25, tip_radius=0.3))
 speed, cycles = operation.pinion_speed * 21 / 33, (1.0, 3.0)  # of the sun, against the carrier
 load = replace(operation, power=operation.power / 3, pinion_speed=speed, contacts=cycles)
 planet = Material("Eh", "MQ", reversed_load=True)
-given = {"K_gamma": mesh_load_factor(3, "wind")}
+given = {"K_gamma": MESH_LOAD_FACTORS[3]}
 rating = rate(ring, load, (planet, steel), Practice(meshes=(1.0, 0.0)), given)  # held: 0
 print([round(s, 2) for s in rating.bending_safety + rating.contact_safety], rating.unverified)
 ```
@@ -381,12 +381,10 @@ def page() -> str:
 
 def _rings() -> str:
     """Return what differs for rings and planetary stages."""
-    rows = []
-    for name, rule in SHARING_RULES.items():
-        values = [f"{mesh_load_factor(n, name):.4g}" for n in range(3, 8)]
-        source = SOURCES[name] + ("" if rule.verified else ": *unverified*")
-        rows.append((name, *values, source))
-    of_rules = grid(("planets", "3", "4", "5", "6", "7", "source"), rows)
+    counts = [f"{n}" for n in MESH_LOAD_FACTORS]
+    factors = [f"{factor:.4g}" for factor in MESH_LOAD_FACTORS.values()]
+    own = ("wind", *factors, "a public program; 1.10 is printed, too: *unverified*")
+    of_rules = grid(("planets", *counts, "source"), [own, *SHARING_RULES])
     heads = "quantity", "of a ring", "source"
     return RINGS + grid(heads, list(OF_RINGS)) + PLANETS + of_rules + EXAMPLE
 

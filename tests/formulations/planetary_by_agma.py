@@ -10,7 +10,7 @@ from gearopt.formulations.drive.planetary import PLANET, SUN, InPlanetaryMesh
 from gearopt.physics.agma.rating import rate
 from gearopt.physics.agma.rating_factors import Practice, Steel
 from gearopt.physics.gears import GearPair
-from gearopt.physics.planetary.loads import mesh_load_factor
+from gearopt.physics.planetary.loads import MESH_LOAD_FACTORS
 from gearopt.physics.rating import Operation
 
 HARD = Steel("carburised", 2)
@@ -32,7 +32,7 @@ def by_agma(train, both=False, size=False):
 
 def _ways(option, both, size):
     count = option.planets.count
-    factor = {"K_gamma": mesh_load_factor(count, "wind")} if count else {}
+    factor = {"K_gamma": MESH_LOAD_FACTORS[count]} if count else {}
 
     def standard(steels, contacts):
         made = agma(steels, hours=own.HOURS, practice=replace(MADE, size=size), given=factor)
@@ -66,7 +66,7 @@ def safe(train, way, made, teeth, width, torque, size=False):
         relative = speed * ring / (sun + ring)
     if n and way.held == "sun":
         of_sun, relative = torque * sun / ring, speed * ring / (sun + ring)
-    overload = 1.25 * (mesh_load_factor(n, "wind") if n else 1.0)
+    overload = 1.25 * (MESH_LOAD_FACTORS[n] if n else 1.0)
     load = Operation(of_sun * relative, relative, own.HOURS, overload=overload)
     g1, g2, g3 = (replace(gear, face_width=width) for gear in made[:3])
     g3 = replace(g3, outside_diameter=way.cutting.outside and -way.cutting.outside)

@@ -19,7 +19,7 @@ from gearopt.physics.geometry.involute import involute, involute_angle
 from gearopt.physics.iso6336.case import Practice, of_blanks
 from gearopt.physics.iso6336.materials import Material
 from gearopt.physics.iso6336.rating import rate
-from gearopt.physics.planetary.loads import mesh_load_factor
+from gearopt.physics.planetary.loads import MESH_LOAD_FACTORS
 from gearopt.physics.rating import Operation
 
 HARD = Material("Eh", "MQ")
@@ -32,7 +32,7 @@ def ways(cutting, counts, fewer, held="ring", **limits):
     """Options of a planetary stage."""
     made = []
     for count in counts:
-        factor = {"K_gamma": mesh_load_factor(count, "wind")}
+        factor = {"K_gamma": MESH_LOAD_FACTORS[count]}
         for less in fewer:
             planets = Planets(cutting, count, held, less, **limits)
             turns, held_ring = (float(count), 1.0), 0.0 if held == "ring" else float(count)
@@ -318,7 +318,7 @@ def safe(train, way, made, teeth, width, torque):
     for k, (pair, mesh, steels) in enumerate(pairs):
         bare = Practice(grades=(6.0, 6.0), meshes=mesh.meshes)
         practice = of_blanks(bare, pair, (blanks[k], blanks[k + 1]))
-        factor = {"K_gamma": mesh_load_factor(n, "wind")}
+        factor = {"K_gamma": MESH_LOAD_FACTORS[n]}
         if not _meets(pair, mesh.operation, steels, practice, factor):
             return False
     return True

@@ -16,8 +16,8 @@ from gearopt.formulations.drive.teeth import gears, problem
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.optimise.solve import run
 from gearopt.physics.gears import Cutter
-from gearopt.physics.geometry.contact import free_tip_diameters
-from gearopt.physics.geometry.fillet import is_undercut
+from gearopt.physics.geometry.contact import active_root_diameters
+from gearopt.physics.geometry.fillet import form_diameter, is_undercut
 from gearopt.physics.iso6336.case import Practice
 from gearopt.physics.iso6336.stiffness import reduced_mass
 
@@ -181,9 +181,9 @@ def test_tips_of_a_ring_end_at_the_form_circles_of_planets():
         fits = option.planets.possible(pair.pinion_teeth, pair.wheel_teeth)
         mesh = option.planets.mesh(pair, with_ring=True)
         fits &= ~is_undercut(mesh.pinion) & (mesh.wheel.tip_alteration < 0.0)
-        free = free_tip_diameters(mesh)[1]
+        active, form = active_root_diameters(mesh)[0], form_diameter(mesh.pinion)
         assert fits.sum() > 10
-        np.testing.assert_allclose(mesh.wheel.tip_diameter[fits], free[fits], rtol=1e-12)
+        np.testing.assert_allclose(active[fits], form[fits], rtol=1e-12)
 
 
 def test_planets_that_do_not_fit_are_named():

@@ -11,14 +11,8 @@ import numpy as np
 import pytest
 
 from gearopt.physics.gears import Gear, GearPair, Rack, replace
-from gearopt.physics.geometry.contact import (
-    active_root_diameters,
-    contact_path,
-    free_tip_diameters,
-    largest_sliding,
-    specific_sliding,
-)
-from gearopt.physics.geometry.fillet import fillet_point, form_diameter
+from gearopt.physics.geometry.contact import contact_path, largest_sliding, specific_sliding
+from gearopt.physics.geometry.fillet import fillet_point
 from gearopt.physics.geometry.involute import shift_sum
 from gearopt.physics.geometry.profile_shift import Meshing
 from gearopt.physics.geometry.tooth import (
@@ -106,21 +100,6 @@ def test_tip_clearances_and_sliding_by_construction():
         rolled = 3.0 * rho_1, rho_2  # speeds of the flanks along each other, omega_2 = 1
         expected = 1.0 - rolled[1] / rolled[0], 1.0 - rolled[0] / rolled[1]
         assert specific_sliding(path, pair.ratio, at) == pytest.approx(expected, rel=1e-12)
-
-
-@pytest.mark.parametrize("ring", [-61, 61])
-def test_tips_that_are_free_of_the_fillets_end_at_the_form_circles(ring):
-    pair = (
-        GearPair.internal(4.0, 22, ring, 50.0)
-        if ring < 0
-        else GearPair.of_teeth(4.0, 22, ring, 50.0, profile_shifts=(0.3, 0.1))
-    )
-    shorter = [
-        replace(gear, tip_alteration=0.5 * (free - gear.tip_diameter) / 4.0)
-        for gear, free in zip(pair.gears, free_tip_diameters(pair), strict=True)
-    ]
-    active = active_root_diameters(replace(pair, pinion=shorter[0], wheel=shorter[1]))
-    assert active == pytest.approx([form_diameter(gear) for gear in pair.gears], rel=1e-12)
 
 
 @pytest.mark.parametrize(("teeth", "shift"), [(30, 0.0), (36, 0.4)])

@@ -146,9 +146,9 @@ class Cutting:
     ) -> Any:
         """Tip alteration of the ring at most 0: its tips reach the form circle of planets.
 
-        `free_tip_diameters` in closed form, at a tenth of its time, without undercut, protuberance
-        and chamfer: rho_F = (d sin(alpha_t) - 2 m_n h/sin(alpha_t))/2, h = h_fP - rho_fP (1 -
-        sin(alpha_n)) - x; rho_a2 = a sin(alpha_wt) + rho_F. first, second: shifts.
+        d_Nf = d_Ff of ISO 21771:2007 in closed form, without undercut, protuberance and chamfer:
+        rho_F = (d sin(alpha_t) - 2 m_n h/sin(alpha_t))/2, h = h_fP - rho_fP (1 - sin(alpha_n)) - x;
+        rho_a2 = a sin(alpha_wt) + rho_F. first, second: shifts.
         """
         if (own := self.tip_alterations[RING]) is not None:
             return own

@@ -116,17 +116,6 @@ def diameters_at(pair: GearPair, path: ContactPath, position: Any) -> tuple[Any,
     )
 
 
-def free_tip_diameters(pair: GearPair) -> tuple[Any, Any]:
-    """Tip form diameters d_Na [mm] that just reach the form circles of the mates.
-
-    Source: ISO 21771:2007, d_Nf = d_Ff solved for the mate's tip.
-    """
-    path, (first, second) = contact_path(pair), pair.gears
-    start = curvature_at(first, form_diameter(first), 0.0) - path.curvatures[0]
-    end = path.curvatures[1] - curvature_at(second, form_diameter(second), 0.0)
-    return diameters_at(pair, path, end)[0], diameters_at(pair, path, start)[1]
-
-
 def specific_sliding(path: ContactPath, ratio: Any, position: Any) -> tuple[Any, Any]:
     """Specific sliding zeta_1 = 1 - rho_2/(u rho_1), zeta_2 = 1 - u rho_1/rho_2 (ISO 21771:2007).
 

@@ -22,7 +22,7 @@ from gearopt.formulations.drive.train import Stage
 from gearopt.formulations.strength.standard import Option
 from gearopt.physics.gears import RIM, Cutter
 from gearopt.physics.iso6336.bending_factors import THIN_RING
-from gearopt.physics.planetary.loads import SHARING_RULES, mesh_load_factor
+from gearopt.physics.planetary.loads import MESH_LOAD_FACTORS
 from gearopt.scenes.drive.idlers import copied
 from gearopt.scenes.drive.rating.checks import check_objective, check_rated
 from gearopt.scenes.drive.rating.gears import loads, required_hours
@@ -50,7 +50,6 @@ from gearopt.scenes.reading.fields import refuse
 if TYPE_CHECKING:
     from gearopt.scenes.drive.scene import Scene
 
-SHARING = "wind"  # of SHARING_RULES: K_gamma that a file does not give
 OF_PAIRS = {  # keys of a stage that one with planets, or a pinion in a ring, does not have
     PLANETARY: ("pinion_teeth", "wheel_teeth", "pinion", "wheel"),
     INTERNAL: ("wheel_teeth", "wheel"),
@@ -245,7 +244,7 @@ def _check_teeth(scene: "Scene", stage: StageTable, k: int) -> None:
     """Refuse numbers of planets without K_gamma, and reductions that leave no whole teeth."""
     if stage.mesh_load_factor is None:
         for count in stage.counts if stage.type == PLANETARY else ():
-            if count and count not in SHARING_RULES[SHARING].values:
+            if count and count not in MESH_LOAD_FACTORS:
                 if 3 <= (most := _with_room(scene, stage)) < count:
                     rule = f"{count} have no room at this ratio, about {most} do by their circles"
                     write = [stage.counts[0], most] if stage.counts[0] < most else most
@@ -421,7 +420,7 @@ def load_factor(stage: StageTable, count: int) -> Fraction:
     """K_gamma of a number of planets."""
     if stage.mesh_load_factor is not None:
         return stage.mesh_load_factor
-    return Fraction(str(mesh_load_factor(count, SHARING)))
+    return Fraction(str(MESH_LOAD_FACTORS[count]))
 
 
 def meshes(stage: StageTable, count: int) -> tuple[StageTable, ...]:

@@ -9,8 +9,7 @@ from typing import Any
 from gearopt.formulations.drive.planetary import LARGE, Planets
 from gearopt.formulations.drive.train import Stage
 from gearopt.optimise.explaining.explanation import Change
-from gearopt.physics.planetary.loads import SHARING_RULES
-from gearopt.scenes.drive.planetary import SHARING
+from gearopt.physics.planetary.loads import MESH_LOAD_FACTORS
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.drive import StageTable
 from gearopt.scenes.drive.tables.planetary import PLANETARY, Teeth
@@ -100,7 +99,7 @@ def ways_of_planets(scene: Scene) -> Iterator[Iterator[tuple[tuple[Change, ...],
 def _next_values(stage: StageTable) -> Iterator[tuple[tuple[str, ...], list[Any]]]:
     """Yield the keys that a stage may write otherwise, and values, near ones first."""
     if stage.type == PLANETARY:
-        known = SHARING_RULES[SHARING].values if stage.mesh_load_factor is None else range(2, 8)
+        known = MESH_LOAD_FACTORS if stage.mesh_load_factor is None else range(2, 8)
         low, high = stage.counts[0], stage.counts[-1]
         counts = [n for n in known if not low <= n <= high]
         counts.sort(key=lambda n: (n > high, min(abs(n - low), abs(n - high))))  # fewer have room
