@@ -13,14 +13,14 @@ import pytest
 import gearopt
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
-MANY = 6  # slow cases of one test, of which all are run
+MANY = 6  # slow cases of one test, of which all are run, but of one marked `campaign`
 
 gc.set_threshold(50_000)  # modules and tests are kept: looking at them takes a tenth of a run
 
 
 def pytest_addoption(parser):
     """An option for campaigns: slow tests of many random cases."""
-    words = f"of every slow test of more than {MANY} cases run one in so many"
+    words = f"of every slow test of more than {MANY} cases, or marked campaign, run one in so many"
     parser.addoption("--sample", type=int, default=1, help=words)
 
 
@@ -33,9 +33,12 @@ def pytest_collection_modifyitems(config, items):
     for item in items:
         if item.get_closest_marker("slow"):
             campaigns.setdefault((item.path, item.originalname), []).append(item)
-    left = [k for found in campaigns.values() if len(found) > MANY for k in found]
-    kept = {id(k) for found in campaigns.values() if len(found) > MANY for k in found[::every]}
-    dropped = {id(k) for k in left} - kept
+    sampled = [
+        cases
+        for cases in campaigns.values()
+        if len(cases) > MANY or cases[0].get_closest_marker("campaign")
+    ]
+    dropped = {id(k) for cases in sampled for n, k in enumerate(cases) if n % every}
     config.hook.pytest_deselected(items=[k for k in items if id(k) in dropped])
     items[:] = [k for k in items if id(k) not in dropped]
 
