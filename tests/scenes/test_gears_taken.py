@@ -316,6 +316,16 @@ def test_a_wrong_source_is_told(kept, kind, changes, key, rule):
     assert wrong.value.key == key and rule in wrong.value.rule
 
 
+@pytest.mark.parametrize(("key", "name"), [("stage", "stge"), ("from", "fron")])
+def test_a_misspelt_key_is_told_in_the_place_of_the_one_it_lacks(kept, key, name):
+    gears = PAIR["gears"] | {key: None, name: PAIR["gears"][key]}
+    with pytest.raises(SceneError) as wrong:
+        gearopt.load(PAIR | {"gears": {k: v for k, v in gears.items() if v is not None}})
+    (error,) = wrong.value.errors
+    assert (error.key, error.rule) == (f"gears.{name}", "unknown key")
+    assert f"Did you mean {key}?" in str(error)
+
+
 def source(folder, name, text):
     (folder / name).write_text(text)
     return {"gears.from": name, "gears.stage": 1}

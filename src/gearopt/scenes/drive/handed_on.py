@@ -68,7 +68,7 @@ def _handed(source: Input, number: int | None, ask: Ask, whole: bool) -> HandedO
             known = " and ".join(map(str, range(1, count + 1)))
             has = f"{source.file} has stage{'s' * (count > 1)} {known}"
             rule = f"is missing: {has}" if number is None else f"is none of its stages: {has}"
-            raise refuse(rule, count, STAGE, "sample")
+            raise refuse(rule, count, STAGE, "sample", "stage")
     places = range(count) if whole else [number - 1] if number else []
     for k in places:
         _check(design.stages[k], f"stage {k + 1} of {source.file}", whole)

@@ -63,17 +63,22 @@ def _with_gears(
     gears = data.get("gears") if isinstance(data, dict) else None
     if not isinstance(gears, dict) or gears.keys().isdisjoint(("from", "stage")):
         return handler(data)
-    if "from" not in gears:
-        rule = "is that of another file's gears, and no key `from` names one"
-        raise refuse(rule, at=STAGE, action="remove")
-    ask = context.ask if isinstance(context, Opened) and context.ask else Ask()
     table = table_of(model.model_fields["gears"].annotation)
     assert table is not None
+    unknown = [(("gears", key), "extra_forbidden") for key in gears.keys() - table.model_fields]
+    if "from" not in gears:
+        rule = "is that of another file's gears, and no key `from` names one"
+        refused = refuse(rule, at=STAGE, action="remove", instead="from")
+        raise _together(model, [((), refused), *unknown])
+    ask = context.ask if isinstance(context, Opened) and context.ask else Ask()
     named, number = (_read(table, key, gears.get(key), context) for key in ("from", "stage"))
     if misread := [(("gears", key), why) for key, why in (*named[1], *number[1])]:
         raise _together(model, misread)
     source = named[0].answered(ask)
-    handed = hand(source, number[0], ask)
+    try:
+        handed = hand(source, number[0], ask)
+    except PydanticCustomError as refused:
+        raise _together(model, [((), refused), *unknown]) from None
     mine = [*_leaves(model, data, ())]
     if others := [*_contradictions(model, mine, handed)]:
         raise _together(model, others)
@@ -103,7 +108,7 @@ def _read(
 
 
 def _together(
-    model: type[BaseModel], errors: Iterable[tuple[Place, PydanticCustomError]]
+    model: type[BaseModel], errors: Iterable[tuple[Place, PydanticCustomError | str]]
 ) -> ValidationError:
     """One error of several, each at its place."""
     rows = [InitErrorDetails(type=why, loc=place, input=None) for place, why in errors]
