@@ -216,7 +216,7 @@ def over_speed(speeds: Speeds, measures: Measures) -> Figure:
         traces.append(marks | {"mode": "markers", "marker": look})
     plot = layout(
         axis("speed of the pinion [rpm]", tickformat=","),
-        axis(f"RMS of the deformation about its mean [{measures.unit('um')}]", rangemode="tozero"),
+        _measured("RMS of the deformation about its mean", measures),
         HEIGHT,
         hovermode="x",
     )
@@ -272,7 +272,7 @@ def before_and_after(best: Chosen, measure: str, measures: Measures) -> Figure:
     traces.append(marks | {"mode": "markers", "marker": {"color": series(1), "size": 6}})
     plot = layout(
         axis("speed of the pinion [rpm]", tickformat=","),
-        axis(f"{measure} [{measures.unit('um')}]", rangemode="tozero"),
+        _measured(measure, measures),
         HEIGHT,
         hovermode="x",
     )
@@ -283,6 +283,12 @@ def before_and_after(best: Chosen, measure: str, measures: Measures) -> Figure:
     caption = f"{measure[0].upper()}{measure[1:]} over speed, of the {pairs}; "
     caption += "only the marked speeds enter the objective."
     return Figure(traces, plot, caption)
+
+
+def _measured(measure: str, measures: Measures) -> dict[str, Any]:
+    """An axis from zero; a long title stands in two lines, since a plot is no higher."""
+    title = f"{measure} [{measures.unit('um')}]".replace(" about ", "<br>about ")
+    return axis(title, rangemode="tozero")
 
 
 def _micro(values: Values | Any, measures: Measures) -> list[float]:
