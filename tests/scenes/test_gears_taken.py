@@ -14,6 +14,7 @@ import gearopt
 from gearopt.errors import GearoptError, SceneError
 from gearopt.scenes.kind import Kind
 from gearopt.scenes.reading import linked_files
+from gearopt.scenes.reading.json_schema import reference
 from gearopt.scenes.reading.load import kind_named
 
 DRIVE = """gearopt = 1
@@ -324,6 +325,14 @@ def test_a_misspelt_key_is_told_in_the_place_of_the_one_it_lacks(kept, key, name
     (error,) = wrong.value.errors
     assert (error.key, error.rule) == (f"gears.{name}", "unknown key")
     assert f"Did you mean {key}?" in str(error)
+
+
+def test_needed_keys_that_a_taking_file_leaves_out_are_said_to_follow(kept):
+    scene, text = gearopt.load(DYNAMICS), reference("dynamics")
+    for table in (scene.pinion, scene.mesh):
+        needed = {n for n, field in type(table).model_fields.items() if field.is_required()}
+        follow = {n for n in needed if f"| `{n}` | yes, or by `from` |" in text}
+        assert follow == needed - {*BEARINGS}
 
 
 def source(folder, name, text):

@@ -10,7 +10,7 @@ from gearopt import units
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.flaws import Flaw, flaws
 from gearopt.physics.loads import torque
-from gearopt.scenes.reading.fields import Table, number, quantity, refuse, speed_ratio
+from gearopt.scenes.reading.fields import FOLLOWS, Table, number, quantity, refuse, speed_ratio
 from gearopt.units import Quantity
 
 
@@ -30,7 +30,7 @@ class Duty(Table):
     torque: Annotated[Quantity | None, quantity("torque", "49.4 N m")] = Field(
         None, description="Torque at the input shaft, in place of power"
     )
-    input_speed: Annotated[Quantity, quantity("speed", "1450 rpm")] = Field(
+    input_speed: Annotated[Quantity, quantity("speed", "1450 rpm"), FOLLOWS] = Field(
         description="Speed of the input shaft"
     )
     output_speed: Annotated[Quantity | None, quantity("speed", "66.5 rpm")] = Field(

@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import Field
 
 from gearopt.physics.motion.kinematics import KINEMATICS
-from gearopt.scenes.reading.fields import Table, choice, number, quantity, truth, whole
+from gearopt.scenes.reading.fields import FOLLOWS, Table, choice, number, quantity, truth, whole
 from gearopt.scenes.reading.linked_files import Input, result_of, takes_gears
 from gearopt.scenes.reading.lists import several, span
 from gearopt.units import Quantity
@@ -28,11 +28,13 @@ class GearsTable(Table):
 class RotorTable(Table):
     """A gear on its bearings."""
 
-    base_diameter: Annotated[Quantity, quantity("length", "120 mm")] = Field(
+    base_diameter: Annotated[Quantity, quantity("length", "120 mm"), FOLLOWS] = Field(
         description="Diameter of the base circle"
     )
-    mass: Annotated[Quantity, quantity("mass", "0.6 kg")] = Field(description="Mass of the gear")
-    inertia: Annotated[Quantity, quantity("inertia", "0.002 kg m^2")] = Field(
+    mass: Annotated[Quantity, quantity("mass", "0.6 kg"), FOLLOWS] = Field(
+        description="Mass of the gear"
+    )
+    inertia: Annotated[Quantity, quantity("inertia", "0.002 kg m^2"), FOLLOWS] = Field(
         description="Moment of inertia about its axis"
     )
     torque: Annotated[Quantity | None, quantity("torque", "200 N m", zero=True, signed=True)] = (
@@ -57,7 +59,7 @@ class RotorTable(Table):
 class MeshTable(Table):
     """How the teeth touch."""
 
-    pressure_angle: Annotated[Quantity, quantity("angle", "20 deg", "45 deg")] = Field(
+    pressure_angle: Annotated[Quantity, quantity("angle", "20 deg", "45 deg"), FOLLOWS] = Field(
         description="Pressure angle of the unloaded pair"
     )
     kinematics: Annotated[str, choice(*KINEMATICS)] = Field(
@@ -120,7 +122,7 @@ class MeshTable(Table):
         description="Backlash along the line of action: teeth may part. Without it the mesh is a "
         "spring that also pulls, and separation is only reported",
     )
-    teeth: Annotated[int, whole(30, 5, 2000)] = Field(description="Teeth of the pinion")
+    teeth: Annotated[int, whole(30, 5, 2000), FOLLOWS] = Field(description="Teeth of the pinion")
     face_width: Annotated[Quantity | None, quantity("length", "20 mm")] = Field(
         None, description="Face width, for K_v of ISO 6336 and AGMA; by default that of `pair`"
     )

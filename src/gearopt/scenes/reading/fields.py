@@ -57,6 +57,9 @@ class Opened:
     ask: Any = None
 
 
+FOLLOWS = "follows from the gears of another file, where they are taken"  # of keys that are needed
+
+
 @dataclass(frozen=True)
 class Reads:
     """How a value of a file is read: read(value, example) -> value, or raises `refuse(...)`.

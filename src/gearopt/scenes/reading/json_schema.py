@@ -5,6 +5,7 @@ from typing import Any
 from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema
 
+from gearopt.scenes.reading.fields import FOLLOWS
 from gearopt.scenes.reading.kinds import kinds
 from gearopt.scenes.reading.load import FORMAT, kind_named
 from gearopt.scenes.reading.mistakes import example_of, table_of, tables
@@ -60,14 +61,15 @@ def reference(kind: str) -> str:
     Tables that it has from another kind are named; their keys stand on the page of that kind.
     """
     model: type[BaseModel] = kind_named(kind).scene
-    parts = [f"### top of the file\n\n{_doc(model)}\n\n{_rows(model)}"]
+    taken = any("from" in table.model_fields for _, table in tables(model))
+    parts = [f"### top of the file\n\n{_doc(model)}\n\n{_rows(model, taken)}"]
     lent: dict[str, list[str]] = {}
     for title, table in tables(model):
         home = table.__module__.split(".")[2]  # gearopt.scenes.KIND
         if home in kinds() and home != kind:
             lent.setdefault(home, []).append(f"`{title}`")
         else:
-            parts.append(f"### {title}\n\n{_doc(table)}\n\n{_rows(table)}")
+            parts.append(f"### {title}\n\n{_doc(table)}\n\n{_rows(table, taken)}")
     for home, titles in lent.items():
         words = f"{', '.join(titles)}: their keys stand on [that page]({home}.md)."
         parts.append(f'### tables of kind = "{home}"\n\n{words}')
@@ -78,7 +80,8 @@ def _doc(model: type[BaseModel]) -> str:
     return " ".join((model.__doc__ or "").split())
 
 
-def _rows(model: type[BaseModel]) -> str:
+def _rows(model: type[BaseModel], taken: bool) -> str:
+    """The keys of a table; taken: files may take their gears, and what follows, from another."""
     lines = ["| key | needed | meaning | example |", "|---|---|---|---|"]
     for name, info in model.model_fields.items():
         if table_of(info.annotation):
@@ -88,7 +91,8 @@ def _rows(model: type[BaseModel]) -> str:
         if default is None and info.default not in (None, "") and not info.is_required():
             default = info.default
         shown = f"default {toml_text(default)}" if default is not None else "no"
-        needed = "yes" if info.is_required() else shown
+        asked = "yes, or by `from`" if taken and FOLLOWS in info.metadata else "yes"
+        needed = asked if info.is_required() else shown
         example = toml_text(example_of(model, (name,)))
         lines.append(f"| `{name}` | {needed} | {info.description} | `{name} = {example}` |")
     return "\n".join(lines)
