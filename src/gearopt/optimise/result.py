@@ -133,6 +133,16 @@ class Outcome:
     records: tuple["Record | Enumerated", ...] = ()
 
 
+def as_dict(self: Any) -> dict[str, Any]:
+    """Return plain dicts, lists and numbers; no NaN and no infinity (None instead)."""
+    return {f.name: plain(getattr(self, f.name)) for f in fields(self)}
+
+
+def as_json(self: Any) -> str:
+    """Return one JSON object."""
+    return json.dumps(self.to_dict(), indent=2, allow_nan=False)
+
+
 @dataclass(frozen=True)
 class Result:
     """The answer to a problem, as `--json` prints it.
@@ -232,13 +242,7 @@ class Result:
         """Return its page, one self-contained HTML text; units: "metric" or "inch"."""
         return str(shown("whole_page", self, units))
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain dicts, lists and numbers; no NaN and no infinity (None instead)."""
-        return as_dict(self)
-
-    def to_json(self) -> str:
-        """Return one JSON object."""
-        return as_json(self)
+    to_dict, to_json = as_dict, as_json
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "Result":
@@ -273,16 +277,6 @@ SHOWN = "gearopt.report.shown"  # who shows an answer, by name: this room import
 def shown(what: str, *of: Any) -> Any:
     """An answer as a function of the report room shows it, imported when it is asked."""
     return getattr(import_module(SHOWN), what)(*of)
-
-
-def as_dict(record: Any) -> dict[str, Any]:
-    """Return the fields of a dataclass as JSON holds them."""
-    return {f.name: plain(getattr(record, f.name)) for f in fields(record)}
-
-
-def as_json(record: Any) -> str:
-    """JSON text of an object that has a `to_dict`."""
-    return json.dumps(record.to_dict(), indent=2, allow_nan=False)
 
 
 def loads(text: str) -> Any:

@@ -171,13 +171,7 @@ class Comparison:
         """Return its page, one self-contained HTML text."""
         return str(shown("compared_page", self))
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain dicts, lists and numbers; no NaN and no infinity (None instead)."""
-        return as_dict(self)
-
-    def to_json(self) -> str:
-        """Return one JSON object."""
-        return as_json(self)
+    to_dict, to_json = as_dict, as_json
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "Comparison":

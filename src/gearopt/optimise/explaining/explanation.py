@@ -143,6 +143,4 @@ class Explanation:
         """Return plain dicts, lists and numbers; no NaN and no infinity (None instead)."""
         return {"explanation": FORMAT, **as_dict(self)}
 
-    def to_json(self) -> str:
-        """Return one JSON object."""
-        return as_json(self)
+    to_json = as_json

@@ -113,13 +113,7 @@ class Front:
         """Return its page, one self-contained HTML text; units: "metric" or "inch"."""
         return str(shown("front_page", self, units))
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain dicts, lists and numbers; no NaN and no infinity (None instead)."""
-        return as_dict(self)
-
-    def to_json(self) -> str:
-        """Return one JSON object."""
-        return as_json(self)
+    to_dict, to_json = as_dict, as_json
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "Front":
