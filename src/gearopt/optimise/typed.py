@@ -4,12 +4,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields, is_dataclass
 from functools import cache, partial
 from types import NoneType, UnionType
-from typing import Any, get_args, get_origin, get_type_hints
+from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
 from gearopt.frozen import dataclass
 
 SINGLE = frozenset((float, int, str, bool, NoneType))  # classes of plain values
 INLINE = {"inline": True}  # metadata of a mapping whose keys stand among those of its dataclass
+T = TypeVar("T")
 NUMBERS: dict[Any, tuple[type, ...]] = {
     float: (int, float),
     int: (int,),
@@ -40,6 +41,12 @@ def typed(kind: Any, data: Any, where: str = "") -> Any:
     kind: a dataclass, a tuple, a mapping, a plain type, any of them or None.
     """
     return _reader(kind)(data, where)
+
+
+def held(kind: type[T], data: Mapping[str, Any], name: str) -> T | None:
+    """The part of a name that plain data hold, as a value of a type; None without it."""
+    part: T | None = typed(kind, data[name], name) if data.get(name) else None
+    return part
 
 
 @cache

@@ -75,7 +75,7 @@ def test_two_pairs_always_in_contact_leave_no_tooth_alone(solved):
     found = contact_of(result)
     assert any("1.9990 is close to 2" in each for each in found.validity)
     assert "over 0.00886 mm of its path (0.1 %)" in answers(found)[0]
-    load = replace(of_duty(found), largest_share=0.6)
+    load = replace(of_duty(found.loads), largest_share=0.6)
     other = replace(found, loads=(load,), contact_ratio=2.001)
     assert "carries at most 60.0 % of the load, as two pairs always touch" in answers(other)[0]
     assert "as three pairs always touch" in answers(replace(other, contact_ratio=3.2))[0]

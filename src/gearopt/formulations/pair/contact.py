@@ -198,26 +198,32 @@ def _loaded(made: PairMesh, k: int, forces: Array, error: Array) -> ContactLoad:
     """Contact at a load (from 0): forces (p, n) [N], approach (p,) [mm]."""
     force, round_ = made.mesh.loads[k], made.mesh.cycle
     shares = forces / force if force else np.zeros_like(forces)
-    width = float(made.elastic.pair.face_width)
-    mean, *harmonics = spectrum(round_.travels, error)
-    stiffness = force / (width * error) if force else np.zeros_like(error)
     stress = contact_stress(made.elastic, round_.along(round_.positions), round_.along(forces))
     return ContactLoad(
         load=made.loads[k],
-        normal_force_N=force,
         largest_tooth_force_N=float(forces.max()),
         largest_share=float(shares.max()),
         largest_contact_stress_MPa=float(stress.max()),
-        mean_transmission_error_mm=mean,
-        peak_to_peak_mm=float(np.ptp(error)),
-        harmonics_mm=column(harmonics),
-        mean_mesh_stiffness_MPa=spectrum(round_.travels, stiffness)[0],
-        least_mesh_stiffness_MPa=float(stiffness.min()),
-        most_mesh_stiffness_MPa=float(stiffness.max()),
         share=column(round_.along(shares)),
         contact_stress_MPa=column(stress),
-        transmission_error_mm=column(error),
+        **motion(force, float(made.elastic.pair.face_width), round_.travels, error),
     )
+
+
+def motion(force: float, width: float, travels: Array, error: Array) -> dict[str, Any]:
+    """Fields of a `LoadedMesh` by its force [N], face width and transmission error [mm]."""
+    mean, *harmonics = spectrum(travels, error)
+    stiffness = force / (width * error) if force else np.zeros_like(error)
+    return {
+        "normal_force_N": force,
+        "mean_transmission_error_mm": mean,
+        "peak_to_peak_mm": float(np.ptp(error)),
+        "harmonics_mm": column(harmonics),
+        "mean_mesh_stiffness_MPa": spectrum(travels, stiffness)[0],
+        "least_mesh_stiffness_MPa": float(stiffness.min()),
+        "most_mesh_stiffness_MPa": float(stiffness.max()),
+        "transmission_error_mm": column(error),
+    }
 
 
 def contact_stress(elastic: ElasticPair, positions: Any, forces: Any) -> Any:

@@ -30,20 +30,17 @@ class ContactPoint:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ContactLoad:
-    """Contact at one load: on the path of contact, and over one base pitch of travel.
+class LoadedMesh:
+    """A pair of gears at one load, over one base pitch of travel.
 
-    load: relative to the torque of the duty. share, contact stress: of the pair of teeth at every
-    position of the path. transmission error: approach of the gears along the line of action at
-    every travel; its harmonics: amplitudes at the mesh frequency and its multiples. mesh stiffness:
-    normal force over face width and approach.
+    load: relative to the torque of the duty. transmission error: approach of the gears along the
+    transverse line of action at every travel; its harmonics: amplitudes at the mesh frequency and
+    its multiples. mesh stiffness: normal force over face width and approach.
     """
 
     load: float
     normal_force_N: Annotated[float, Shown("normal force", "forces")]
-    largest_tooth_force_N: Annotated[float, Shown("largest load on a tooth", "forces")]
-    largest_share: float
-    largest_contact_stress_MPa: Annotated[float, Shown("largest contact stress", "motion")]
+    largest_contact_stress_MPa: Annotated[float, Shown("largest contact stress", "stress")]
     mean_transmission_error_mm: Annotated[float, Shown("transmission error, mean", "motion", "um")]
     peak_to_peak_mm: Annotated[float, Shown("peak to peak", "motion", "um")]
     harmonics_mm: Columns
@@ -56,9 +53,20 @@ class ContactLoad:
     most_mesh_stiffness_MPa: Annotated[
         float, Shown("mesh stiffness, maximum", "stiffness", "N_per_mm_um")
     ]
+    transmission_error_mm: Columns
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactLoad(LoadedMesh):
+    """Contact of a spur pair at one load.
+
+    share, contact stress: of the pair of teeth at every position of the path of contact.
+    """
+
+    largest_tooth_force_N: Annotated[float, Shown("largest load on a tooth", "forces")]
+    largest_share: float
     share: Columns
     contact_stress_MPa: Columns
-    transmission_error_mm: Columns
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.pair.contact import column, spectrum
+from gearopt.formulations.pair.contact import column, motion
 from gearopt.formulations.pair.flank_design import FlankLoad
 from gearopt.formulations.pair.relief.meshing import NO_RELIEF, Relief
 from gearopt.frozen import dataclass
@@ -174,16 +174,11 @@ def flank_loads(mesh: FlankMesh) -> tuple[FlankLoad, ...]:
 def _loaded(mesh: FlankMesh, k: int) -> FlankLoad:
     """Contact over the flank at a load, counted from 0."""
     force = mesh.loads[k] * mesh.sliced.force
-    travels, error = mesh.cycle.travels, mesh.sharing.approach[k]
     line = mesh.line_loads(k)
     stress = mesh.stresses(line)
-    width = mesh.face.width
-    mean, *harmonics = spectrum(travels, error)
-    stiffness = force / (width * error) if force else np.zeros_like(error)
     (s_line, y_line), (s_stress, y_stress) = (_place(mesh, each) for each in (line, stress))
     return FlankLoad(
         load=mesh.loads[k],
-        normal_force_N=force,
         largest_line_load_N_per_mm=float(line.max()),
         line_load_position_mm=s_line,
         line_load_place_mm=y_line,
@@ -191,16 +186,10 @@ def _loaded(mesh: FlankMesh, k: int) -> FlankLoad:
         largest_contact_stress_MPa=float(stress.max()),
         contact_stress_position_mm=s_stress,
         contact_stress_place_mm=y_stress,
-        mean_transmission_error_mm=mean,
-        peak_to_peak_mm=float(np.ptp(error)),
-        harmonics_mm=column(harmonics),
-        mean_mesh_stiffness_MPa=spectrum(travels, stiffness)[0],
-        least_mesh_stiffness_MPa=float(stiffness.min()),
-        most_mesh_stiffness_MPa=float(stiffness.max()),
         open_share=_open_share(mesh, k),
-        transmission_error_mm=column(error),
         line_load_N_per_mm=mesh.picture(line),
         contact_stress_MPa=mesh.picture(stress),
+        **motion(force, mesh.face.width, mesh.cycle.travels, mesh.sharing.approach[k]),
     )
 
 

@@ -5,23 +5,21 @@ Fields are keys of a result, with their units.
 
 from typing import Annotated
 
-from gearopt.formulations.pair.design import Columns, ElasticTeeth
+from gearopt.formulations.pair.design import Columns, ElasticTeeth, LoadedMesh
 from gearopt.frozen import dataclass
 from gearopt.optimise.typed import Shown
 
 
 @dataclass(frozen=True, kw_only=True)
-class FlankLoad:
-    """Contact over the flank at one load, relative to the torque of the duty.
+class FlankLoad(LoadedMesh):
+    """Contact over the flank at one load.
 
     line load: transverse normal force per face width, largest at position s on the path of contact
     and y across the face, as the largest contact stress. face_load_factor: largest over mean of the
     force per face width, summed over all lines and averaged over a base pitch. line_load, stress:
-    one row per place across the face, over the path of the flank. transmission error: approach
-    along the transverse line of action.
+    one row per place across the face, over the path of the flank.
     """
 
-    load: float
     normal_force_N: Annotated[float, Shown("transverse normal force", "forces")]
     largest_line_load_N_per_mm: Annotated[
         float, Shown("largest line load", "forces", unit="N_per_mm")
@@ -29,26 +27,12 @@ class FlankLoad:
     line_load_position_mm: Annotated[float, Shown("at s on the path", "forces")]
     line_load_place_mm: Annotated[float, Shown("and y across the face", "forces")]
     face_load_factor: Annotated[float, Shown("face load factor of the flank", "forces")]
-    largest_contact_stress_MPa: Annotated[float, Shown("largest contact stress", "motion")]
-    contact_stress_position_mm: Annotated[float, Shown("there at s", "motion")]
-    contact_stress_place_mm: Annotated[float, Shown("there at y", "motion")]
-    mean_transmission_error_mm: Annotated[float, Shown("transmission error, mean", "motion", "um")]
-    peak_to_peak_mm: Annotated[float, Shown("peak to peak", "motion", "um")]
+    contact_stress_position_mm: Annotated[float, Shown("there at s", "stress")]
+    contact_stress_place_mm: Annotated[float, Shown("there at y", "stress")]
     plain_peak_to_peak_mm: Annotated[
         float | None, Shown("the same without relief", "motion", "um")
     ] = None
-    harmonics_mm: Columns
-    mean_mesh_stiffness_MPa: Annotated[
-        float, Shown("mesh stiffness, mean", "stiffness", "N_per_mm_um")
-    ]
-    least_mesh_stiffness_MPa: Annotated[
-        float, Shown("mesh stiffness, minimum", "stiffness", "N_per_mm_um")
-    ]
-    most_mesh_stiffness_MPa: Annotated[
-        float, Shown("mesh stiffness, maximum", "stiffness", "N_per_mm_um")
-    ]
     open_share: float
-    transmission_error_mm: Columns
     line_load_N_per_mm: tuple[Columns, ...]
     contact_stress_MPa: tuple[Columns, ...]
 

@@ -6,7 +6,7 @@ from math import isclose, pi
 
 from gearopt.formulations.drive.rating import DriveRating, GearRating, MeshRating, StaticRating
 from gearopt.optimise.result import FEASIBLE, Result
-from gearopt.optimise.typed import typed
+from gearopt.optimise.typed import held
 from gearopt.physics.agma import life as life_curves
 from gearopt.physics.mesh_loss import FRICTION_ERROR
 from gearopt.report.measures import METRIC, Measures, rounded
@@ -54,9 +54,7 @@ SHOWN_UNITS = {  # units of factors that are shown in others: deviations of flan
 
 def rating_of(result: Result) -> DriveRating | None:
     """The rating that a design holds; None without one."""
-    held = result.design.get("rating")
-    rating: DriveRating | None = typed(DriveRating, held, "rating") if held else None
-    return rating
+    return held(DriveRating, result.design, "rating")
 
 
 def binding_limit(result: Result, measures: Measures = METRIC) -> str:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from gearopt.formulations.pair.design import ContactLoad, PairContact
 from gearopt.optimise.result import Result
-from gearopt.optimise.typed import typed
+from gearopt.optimise.typed import held
 from gearopt.report.answer import asked, assumptions, limits, summary
 from gearopt.report.design_tables import stage_label
 from gearopt.report.drawing import mesh_view, train_views
@@ -35,9 +35,7 @@ STIFFNESS = "N_per_mm_um"  # of MPa
 
 def contact_of(result: Result) -> PairContact | None:
     """The contact that a design holds; None without one."""
-    held = result.design.get("contact")
-    pair_contact: PairContact | None = typed(PairContact, held, "contact") if held else None
-    return pair_contact
+    return held(PairContact, result.design, "contact")
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
@@ -48,7 +46,9 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
         return []
     relief = relief_of(result)
     modified = pair_relief.tiles(relief, measures) if relief else []
-    of_contact = _contact_tiles(pair_contact, of_duty(pair_contact), measures, relief is not None)
+    of_contact = _contact_tiles(
+        pair_contact, of_duty(pair_contact.loads), measures, relief is not None
+    )
     return [*modified, *of_contact, *rating_words.tiles(result, measures)]
 
 
@@ -89,7 +89,7 @@ def binding_limit(result: Result, measures: Measures = METRIC) -> str:
         return _with_rating(result, flank.binding_words(flanks, measures), measures)
     if (pair_contact := contact_of(result)) is None or result.value is not None:
         return ""
-    load = of_duty(pair_contact)
+    load = of_duty(pair_contact.loads)
     force = amount(load.largest_tooth_force_N, "N", measures)
     error = amount(load.peak_to_peak_mm, "um", measures)
     words = f"one tooth carries up to {force}; the transmission error varies by {error}"

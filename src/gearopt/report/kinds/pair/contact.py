@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.drive.design import StageDesign, drive_design
-from gearopt.formulations.pair.design import ContactLoad, PairContact, PairRelief
-from gearopt.formulations.pair.flank_design import FlankContact, FlankLoad
+from gearopt.formulations.pair.design import ContactLoad, LoadedMesh, PairContact, PairRelief
+from gearopt.formulations.pair.flank_design import FlankContact
 from gearopt.optimise.result import Result
 from gearopt.physics.blanks import Body
 from gearopt.physics.gears import GearPair
@@ -60,7 +60,7 @@ def moving(
 
     With a relief before and after it, side by side and in every plot.
     """
-    duty, path = of_duty(contact), usable_path(pair)
+    duty, path = of_duty(contact.loads), usable_path(pair)
     shown = {"": carried(contact, duty)}
     if relief:
         after = relief.at[contact.loads.index(duty)]
@@ -79,7 +79,7 @@ def _of_loads(
     contact: PairContact, relief: PairRelief | None, pair: GearPair, measures: Measures
 ) -> list[Figure]:
     """Plot shares and transmission error at every load, before and after a relief."""
-    shown, path = carried(contact, of_duty(contact)), usable_path(pair)
+    shown, path = carried(contact, of_duty(contact.loads)), usable_path(pair)
     shares, errors = _lines(contact.loads, measures)
     said = "by the load"
     if relief:
@@ -118,7 +118,7 @@ def _pale(lines: Sequence[Line]) -> list[Line]:
 
 def _stiffness(contact: PairContact, pair: GearPair, measures: Measures) -> Figure:
     """Plot the stiffness of one pair of teeth and of the mesh beside those of ISO 6336-1."""
-    duty, factor = of_duty(contact), measures.of(1.0, STIFFNESS)
+    duty, factor = of_duty(contact.loads), measures.of(1.0, STIFFNESS)
     lines = [Line(factor * np.asarray(contact.pair_stiffness_MPa), "one pair of teeth", 1)]
     if duty.normal_force_N:
         error = float(pair.face_width) * np.asarray(duty.transmission_error_mm)
@@ -208,7 +208,7 @@ def load_table(
     contact: PairContact | FlankContact, measures: Measures, forces: list[list[Any]], caption: str
 ) -> Table:
     """Everything at every load, beside the stiffness by ISO 6336-1; forces: rows after them."""
-    each: Sequence[ContactLoad | FlankLoad] = contact.loads
+    each: Sequence[LoadedMesh] = contact.loads
     micro, stiff = measures.unit("um"), measures.unit(STIFFNESS)
     waves = zip(*(load.harmonics_mm for load in each), strict=True)
     unloaded = Cell("", "–")  # there is no mesh stiffness
@@ -219,6 +219,7 @@ def load_table(
     rows = [
         *side_by_side(each, measures, "forces"),
         *forces,
+        *side_by_side(each, measures, "stress"),
         *side_by_side(each, measures, "motion"),
         *(
             [f"harmonic {k} [{micro}]", *(cell(v, "um", measures) for v in wave)]
@@ -254,14 +255,15 @@ def path(contact: PairContact, measures: Measures) -> Table:
 
 
 def travel(
-    contact: PairContact,
+    contact: PairContact | FlankContact,
     measures: Measures,
-    loads: Sequence[ContactLoad] = (),
+    loads: Sequence[LoadedMesh] = (),
     name: str = "transmission error",
 ) -> Table:
     """Transmission error over one base pitch at every load; loads: those with relief."""
     listed: Columns = [("travel", contact.travel_mm, "mm")]
-    for load in loads or contact.loads:
+    each: Sequence[LoadedMesh] = loads or contact.loads
+    for load in each:
         head = f"transmission error at {100.0 * load.load:g} %"
         listed.append((head, load.transmission_error_mm, "um"))
     return columns(name, listed, measures)

@@ -7,10 +7,18 @@ import numpy as np
 
 from gearopt.formulations.pair.flank_design import FlankContact, FlankLoad
 from gearopt.optimise.result import Result
-from gearopt.optimise.typed import typed
+from gearopt.optimise.typed import held
 from gearopt.physics.gears import MEMBERS
 from gearopt.report.drawing.sheet import series
-from gearopt.report.kinds.pair.contact import DASHES, STIFFNESS, columns, load_table
+from gearopt.report.kinds.pair.contact import (
+    DASHES,
+    STIFFNESS,
+    Columns,
+    columns,
+    load_table,
+    travel,
+)
+from gearopt.report.kinds.pair.words import of_duty
 from gearopt.report.measures import METRIC, Measures, rounded
 from gearopt.report.plots import Figure, axis, heat, layout
 from gearopt.report.plots import lines as curve
@@ -43,20 +51,12 @@ UNMEASURED = (
 
 def flank_of(result: Result) -> FlankContact | None:
     """The contact over the flank that a design holds; None without one."""
-    held = result.design.get("flank")
-    flank: FlankContact | None = typed(FlankContact, held, "flank") if held else None
-    return flank
-
-
-def of_duty(flank: FlankContact) -> FlankLoad:
-    """Contact at the torque of the duty, else at the largest load."""
-    loads = {load.load: load for load in flank.loads}
-    return loads.get(1.0) or loads[max(loads)]
+    return held(FlankContact, result.design, "flank")
 
 
 def tiles(flank: FlankContact, measures: Measures) -> list[Tile]:
     """Line load, transmission error, stiffness and contact ratios as key figures."""
-    load = of_duty(flank)
+    load = of_duty(flank.loads)
     torque = f"at {share(load.load)} % of the duty's torque"
     iso = amount(flank.iso_mesh_stiffness_MPa, STIFFNESS, measures)
     plain = load.plain_peak_to_peak_mm
@@ -86,7 +86,7 @@ def tiles(flank: FlankContact, measures: Measures) -> list[Tile]:
 
 def binding_words(flank: FlankContact, measures: Measures) -> str:
     """Largest line load and evenness of the pair, in words."""
-    load = of_duty(flank)
+    load = of_duty(flank.loads)
     line = amount(load.largest_line_load_N_per_mm, "N_per_mm", measures)
     error = amount(load.peak_to_peak_mm, "um", measures)
     return f"the flanks carry up to {line} of face width; the transmission error varies by {error}"
@@ -109,7 +109,7 @@ def section(result: Result, measures: Measures = METRIC) -> Section | None:
 
 def answers(flank: FlankContact, measures: Measures = METRIC) -> list[str]:
     """Where the load lies, how even the motion is, stiffness, and how sure that is."""
-    load = of_duty(flank)
+    load = of_duty(flank.loads)
     if not load.normal_force_N:
         return ["Without load nothing is carried.", _lines(flank, measures)]
     each = [
@@ -206,7 +206,7 @@ def _sure(flank: FlankContact) -> list[str]:
 
 def _figures(flank: FlankContact, measures: Measures) -> list[Figure]:
     """Pictures of line load and pressure at the duty's torque, and curves over a base pitch."""
-    load = of_duty(flank)
+    load = of_duty(flank.loads)
     pressure = _picture(flank, load.contact_stress_MPa, "MPa", "contact stress", measures)
     pictured = _picture(flank, load.line_load_N_per_mm, "N_per_mm", "line load", measures)
     at = f"at {100.0 * load.load:g} % of the duty's torque"
@@ -292,17 +292,8 @@ def _errors(flank: FlankContact, measures: Measures) -> Figure:
 
 def _tables(flank: FlankContact, measures: Measures) -> list[Table]:
     """CSV files: errors over a base pitch, and the flank at every load."""
-    listed: list[tuple[str, Sequence[float], str]] = [
-        ("travel", flank.travel_mm, "mm"),
-    ]
-    for load in flank.loads:
-        head = f"transmission error at {100.0 * load.load:g} %"
-        listed.append((head, load.transmission_error_mm, "um"))
     y, s = (v.ravel() for v in np.meshgrid(flank.place_mm, flank.path_mm, indexing="ij"))
-    over: list[tuple[str, Sequence[float], str]] = [
-        ("s", s.tolist(), "mm"),
-        ("y", y.tolist(), "mm"),
-    ]
+    over: Columns = [("s", s.tolist(), "mm"), ("y", y.tolist(), "mm")]
     for load in flank.loads:
         at = f"at {100.0 * load.load:g} %"
         line, stress = (
@@ -310,4 +301,4 @@ def _tables(flank: FlankContact, measures: Measures) -> list[Table]:
             for rows in (load.line_load_N_per_mm, load.contact_stress_MPa)
         )
         over += [(f"line load {at}", line, "N_per_mm"), (f"contact stress {at}", stress, "MPa")]
-    return [columns("transmission error", listed, measures), columns("flank", over, measures)]
+    return [travel(flank, measures), columns("flank", over, measures)]

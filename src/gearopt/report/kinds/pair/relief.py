@@ -15,7 +15,7 @@ from gearopt.formulations.pair.design import (
 )
 from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result
-from gearopt.optimise.typed import typed
+from gearopt.optimise.typed import held
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.tooth.measured import PAIRS
 from gearopt.physics.tooth.validity import EXACT
@@ -49,9 +49,7 @@ HARMONICS_WORDS = (
 
 def relief_of(result: Result) -> PairRelief | None:
     """The relief that a design holds; None without one."""
-    held = result.design.get("relief")
-    relief: PairRelief | None = typed(PairRelief, held, "relief") if held else None
-    return relief
+    return held(PairRelief, result.design, "relief")
 
 
 def tiles(relief: PairRelief, measures: Measures) -> list[Tile]:
@@ -389,7 +387,7 @@ def harmonics(contact: PairContact, relief: PairRelief, measures: Measures) -> S
     """Plot harmonics of the transmission error before and after at up to PANELS loads."""
     rows = list(zip(contact.loads, relief.at, strict=True))
     if len(rows) > PANELS:
-        duty = contact.loads.index(of_duty(contact))
+        duty = contact.loads.index(of_duty(contact.loads))
         rows = [rows[k] for k in sorted({0, duty, len(rows) - 1})]
     figure = _bars(rows, contact, relief, measures)
     return Section(

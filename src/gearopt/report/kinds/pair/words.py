@@ -1,8 +1,10 @@
 """Answers to an engineer's questions on a pair's contact, in sentences."""
 
 import math
+from collections.abc import Sequence
+from typing import TypeVar
 
-from gearopt.formulations.pair.design import ContactLoad, PairContact
+from gearopt.formulations.pair.design import ContactLoad, LoadedMesh, PairContact
 from gearopt.physics.gears import GearPair
 from gearopt.physics.iso6336.accuracy import deviations
 from gearopt.physics.mesh_cycle import NARROW
@@ -11,13 +13,13 @@ from gearopt.physics.tooth.validity import EXACT
 from gearopt.report.measures import METRIC, Measures, rounded
 from gearopt.report.words import micrometres, share
 
+Load = TypeVar("Load", bound=LoadedMesh)
 ALWAYS = {2: "two", 3: "three"}  # pairs, by the whole part of the contact ratio
 
 
-def of_duty(contact: PairContact) -> ContactLoad:
+def of_duty(loads: Sequence[Load]) -> Load:
     """Contact at the torque of the duty, else at the largest load."""
-    loads = {load.load: load for load in contact.loads}
-    return loads.get(1.0) or loads[max(loads)]
+    return next((load for load in loads if load.load == 1.0), max(loads, key=lambda it: it.load))
 
 
 def answers(
@@ -32,7 +34,7 @@ def answers(
     pair: its gears, of whole teeth. frequency: of the mesh [Hz]. relieved: the gears have relief,
     which is told elsewhere; the contact told here is without it.
     """
-    load = of_duty(contact)
+    load = of_duty(contact.loads)
     even = _even(contact, load, frequency, measures)
     if pair is not None and (alike := graded(pair, load.peak_to_peak_mm)):
         even = f"{even} {alike}"
