@@ -362,7 +362,7 @@ def _strengths() -> str:
 
 
 def _refusals() -> str:
-    """Return what is refused, by name."""
+    """What is refused, by name."""
     rows = list(SENTENCES.items())
     return (
         "\n## What is refused\n\nA pair is refused by name; `geometry.flaws` warns of what a "

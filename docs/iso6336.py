@@ -380,7 +380,7 @@ def page() -> str:
 
 
 def _rings() -> str:
-    """Return what differs for rings and planetary stages."""
+    """What differs for rings and planetary stages."""
     counts = [f"{n}" for n in MESH_LOAD_FACTORS]
     factors = [f"{factor:.4g}" for factor in MESH_LOAD_FACTORS.values()]
     own = ("wind", *factors, "a public program; 1.10 is printed, too: *unverified*")

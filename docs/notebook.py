@@ -17,7 +17,7 @@ BLOCK = re.compile(r"```python\n(.*?)```\n(?:\n```\n(.*?)```\n)?", re.S)
 
 
 def run(page: str, first: int | None = None) -> list[str]:
-    """Return what each block of a page prints, run in order in one namespace; first: so many."""
+    """What each block of a page prints, run in order in one namespace; first: so many."""
     scope: dict[str, object] = {}
     said, before = [], Path.cwd()
     with tempfile.TemporaryDirectory() as room:

@@ -30,7 +30,7 @@ def volume(blank, module, d, b):
 
 
 def backup(blank, module, d):
-    """Return what is below the root over the whole depth of 2.25 modules; None: solid."""
+    """What is below the root over the whole depth of 2.25 modules; None: solid."""
     found = rings(blank, module, d)
     if len(found) == 1 and not found[0][1]:
         return None

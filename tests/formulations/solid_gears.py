@@ -302,7 +302,7 @@ def contact_lines(
 
 
 def _local(elastic: Any, row: Any, force: float, wide: float) -> Any:
-    """Return what the half plane adds to segments that are pressed wider than they touch."""
+    """What the half plane adds to segments that are pressed wider than they touch."""
     cosine = float(np.cos(base_helix_angle(elastic.pair.pinion)))
     soft = sum(
         2.0 * (1.0 - nu**2) / (np.pi * e)

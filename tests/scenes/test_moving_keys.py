@@ -76,7 +76,7 @@ def scaled(value, factor):
 
 
 def others(value, example, words):
-    """Return what a key is changed to, in turn: 10 % more and less, other words, the example."""
+    """What a key is changed to, in turn: 10 % more and less, other words, the example."""
     start = example if value is None else value
     return [
         other
@@ -143,7 +143,7 @@ def at(content, key):
 
 
 def idle(kind, name, key):
-    """Return what was tried of a key that moves nothing; None where it moves the answer."""
+    """What was tried of a key that moves nothing; None where it moves the answer."""
     file, content, given, budget, before = base(kind, name)
     own, tried = TABLE[kind][name], []
     value = given.get(key, at(content, key))

@@ -86,7 +86,7 @@ def brute_force(train, make, rel):
 
 
 def same_as_brute_force(train, make, gap):
-    """Return what the search finds, after holding it to the least of all boxes, infinite: none."""
+    """What the search finds, after holding it to the least of all boxes, infinite: none."""
     best = brute_force(train, make, 0.2 * gap)
     result, outcome = run(together.problem(train, make), "exact", Budget(gap=gap), 0, None, gap)
     if not math.isinf(best):

@@ -46,7 +46,7 @@ def drawn(seed):
 
 
 def used(standard, pair, torque, speed, safety=(1.2, 1.1)):
-    """Return what is used by the exact safety factors; NaN where a pair is refused."""
+    """What is used by the exact safety factors; NaN where a pair is refused."""
     names = Option((standard,)).utilisations(pair, torque, speed, safety)
     bent = [v for n, v in names.items() if "bending" in n]
     pressed = [v for n, v in names.items() if "contact" in n]

@@ -14,7 +14,7 @@ POINTS = 6
 
 
 def looseness(standard, pair, low, torque, power, rng):
-    """Return what is used over its bound by nominal stresses (points, n), at least 1."""
+    """What is used over its bound by nominal stresses (points, n), at least 1."""
     ends = torque, torque * SPREAD
     speed = power / ends[0], power / ends[1]
     needed = standard.nominal(standard.prepared(pair), pair, ends, speed, ASKED, (low, low * WIDE))

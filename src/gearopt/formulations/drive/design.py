@@ -144,12 +144,12 @@ class StageDesign:
         d = self.pinion_diameter_mm, self.wheel_diameter_mm
         shifts = self.pinion_profile_shift, self.wheel_profile_shift
         each = zip(d, shifts, strict=True)
-        shifted = [one + 2.0 * x * self.normal_module_mm for one, x in each]
+        shifted = [diameter + 2.0 * x * self.normal_module_mm for diameter, x in each]
         widths = [gear.width for gear in self.pair.gears]
 
         def off(diameters: Sequence[float]) -> float:
             rows = zip(widths, diameters, strict=True)
-            volume = sum(0.25 * math.pi * float(b) * one**2 for b, one in rows)
+            volume = sum(0.25 * math.pi * float(b) * diameter**2 for b, diameter in rows)
             return abs(volume - self.gear_volume_mm3)
 
         return (shifted[0], shifted[1]) if off(shifted) < off(d) else d

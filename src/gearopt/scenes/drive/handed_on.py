@@ -253,16 +253,17 @@ def _add_rating(
     if rating.accuracy is not None or rating.quality is not None:
         a, q = rating.accuracy, rating.quality
         follows["rating", "accuracy"], follows["rating", "quality"] = a or 17 - q, q or 17 - a
-    listed = [one.model_copy(update=PRICELESS) for one in drive.material if one.name in used]
+    chosen = [row for row in drive.material if row.name in used]
+    listed = [row.model_copy(update=PRICELESS) for row in chosen]
     levels = []
     for level in drive.load:
         at = level.input_speed
         at = at and replace(at, number=at.number / slower)
         levels.append(level.model_copy(update={"input_speed": at}))
     for table, rows in (("material", listed), ("load", levels)):
-        tables |= {table: [content(one, False) for one in rows]} if rows else {}
-        for k, one in enumerate(rows):
-            follows |= dict(every(one, (table, k)))
+        tables |= {table: [content(row, False) for row in rows]} if rows else {}
+        for k, row in enumerate(rows):
+            follows |= dict(every(row, (table, k)))
 
 
 def _of(value: float, unit: str = "mm", dimension: str = "length") -> Quantity:

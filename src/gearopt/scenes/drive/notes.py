@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from gearopt.formulations.drive.design import drive_design
 from gearopt.formulations.drive.shares import FRICTION
 from gearopt.formulations.drive.train import STEEL_DENSITY
 from gearopt.optimise.result import Result
@@ -16,6 +17,7 @@ from gearopt.scenes.drive.rating.assumptions import (
     rating_assumptions,
     unused_materials,
 )
+from gearopt.scenes.drive.rating.by_mesh import by_mesh, mesh_names
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.blanks import blank, body_flaws
 from gearopt.scenes.drive.tables.drive import ORIGINS
@@ -103,9 +105,6 @@ def with_notes(scene: Scene, result: Result, exact: bool) -> Result:
 def _noted(scene: Scene, result: Result, exact: bool) -> Result:
     if not result.design:
         return result
-    from gearopt.formulations.drive.design import drive_design
-    from gearopt.scenes.drive.rating.by_mesh import by_mesh, mesh_names
-
     design = drive_design(result.design)
     held = scene.held(len(design.stages))
     meshed, pairs, _ = by_mesh(held, design)

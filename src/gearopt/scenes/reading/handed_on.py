@@ -121,13 +121,13 @@ def _leaves(model: type[BaseModel], data: Any, place: Place) -> Iterator[tuple[A
         info = model.model_fields.get(key)
         table = table_of(info.annotation) if info else None
         inside = [((*place, key), value)]
-        if table and isinstance(value, list) and all(isinstance(one, dict) for one in value):
-            inside = [((*place, key, k), one) for k, one in enumerate(value)]
-        for at, one in inside:
-            if table and isinstance(one, dict) and one:
-                yield from _leaves(table, one, at)
+        if table and isinstance(value, list) and all(isinstance(item, dict) for item in value):
+            inside = [((*place, key, k), item) for k, item in enumerate(value)]
+        for at, item in inside:
+            if table and isinstance(item, dict) and item:
+                yield from _leaves(table, item, at)
             else:
-                yield model, at, one
+                yield model, at, item
 
 
 def _contradictions(
@@ -166,7 +166,7 @@ def same(said: Any, known: Any) -> bool:
     if isinstance(said, bool | int | str) or isinstance(known, bool | str | None):
         return bool(said == known)
     try:
-        ends = [float(getattr(one, "value", one)) for one in (said, known)]
+        ends = [float(getattr(value, "value", value)) for value in (said, known)]
     except (TypeError, ValueError):
         return bool(said == known)
     return math.isclose(*ends, rel_tol=SAME, abs_tol=1e-12)
@@ -179,7 +179,7 @@ def text_of(value: Any, like: Any) -> str:
             return str(value)
         return f"{value.value / replace(like, number=Fraction(1)).value:.6g} {like.unit}"
     if isinstance(value, tuple):
-        return ", ".join(dict.fromkeys(text_of(one, like) for one in value))
+        return ", ".join(dict.fromkeys(text_of(part, like) for part in value))
     if isinstance(value, str | bool | int | Input):
         return short(value.file if isinstance(value, Input) else value)
     return f"{float(value):.6g}"
@@ -205,15 +205,17 @@ def _of_handed(
     at = STAGE if lookup(data, STAGE)[1] else ("gears", "from")
     for error in wrong.errors(include_url=False):
         context, loc = error.get("ctx", {}), error["loc"]
-        place, told = (*loc, *context.get("at", ())), cast(Any, error["type"])
-        if told == "gearopt":
-            told = refuse(*(context[name] for name in ("rule", "write", "at", "action", "instead")))
+        place, reason = (*loc, *context.get("at", ())), cast(Any, error["type"])
+        if reason == "gearopt":
+            reason = refuse(
+                *(context[name] for name in ("rule", "write", "at", "action", "instead"))
+            )
             if lookup(tables, place)[1] and not lookup(data, place)[1]:
                 key = ".".join(step for step in place if isinstance(step, str))
                 rule = f"takes {handed.of}, whose {key} {context['rule']}"
                 write = "Change the file that it is taken from, or take other gears"
-                told, loc = refuse(rule, write, action="tell"), at
-        rows.append(InitErrorDetails(type=told, loc=loc, input=error["input"], ctx=context))
+                reason, loc = refuse(rule, write, action="tell"), at
+        rows.append(InitErrorDetails(type=reason, loc=loc, input=error["input"], ctx=context))
     return ValidationError.from_exception_data(model.__name__, rows)
 
 
@@ -221,13 +223,13 @@ def _only(held: Any, data: Any) -> None:
     """Let tables count as set what the file itself has in them."""
     if isinstance(held, tuple):
         each = data if isinstance(data, list) else []
-        for k, one in enumerate(held):
-            _only(one, each[k] if k < len(each) else None)
+        for k, row in enumerate(held):
+            _only(row, each[k] if k < len(each) else None)
     if isinstance(held, BaseModel):
-        own = data if isinstance(data, dict) else {}
+        content = data if isinstance(data, dict) else {}
         for name in type(held).model_fields:
-            _only(getattr(held, name), own.get(name))
-        object.__setattr__(held, "__pydantic_fields_set__", {*own} & {*type(held).model_fields})
+            _only(getattr(held, name), content.get(name))
+        object.__setattr__(held, "__pydantic_fields_set__", {*content} & {*type(held).model_fields})
 
 
 def every(table: BaseModel, place: Place) -> Iterator[tuple[Place, Any]]:

@@ -172,8 +172,8 @@ def stopped_early(scene: Any) -> list[str]:
     source = getattr(getattr(scene, "gears", None), "from", None)
     if source is None or source.result(Ask()).status != "limit":
         return []
-    found = f"The gears are those that {source.file} had when its time ended"
-    return [f"{found}: with more time there may be better ones."]
+    gears = f"The gears are those that {source.file} had when its time ended"
+    return [f"{gears}: with more time there may be better ones."]
 
 
 def inputs_of(scene: Any) -> dict[str, str]:

@@ -218,10 +218,10 @@ def given_design(
 def _of_materials(scene: Scene, design: DriveDesign) -> DriveDesign:
     """A drive of given gears with the names and densities of their materials."""
     usual, stages = scene.objective.density, []
-    for own, stage in zip(scene.stage_tables, design.stages, strict=True):
+    for table, stage in zip(scene.stage_tables, design.stages, strict=True):
         values: dict[str, Any] = {}
         for member in MEMBERS:
-            material = choices(getattr(own, member), scene.gears, scene.material)[0][1]
+            material = choices(getattr(table, member), scene.gears, scene.material)[0][1]
             dense = material.density.value if material and material.density else None
             mass = getattr(stage, f"{member}_mass_kg")
             before = usual.value if usual else STEEL_DENSITY
@@ -229,7 +229,7 @@ def _of_materials(scene: Scene, design: DriveDesign) -> DriveDesign:
             values[f"{member}_material"] = material.name if material else ""
         total = sum(values[f"{member}_mass_kg"] for member in MEMBERS)
         stages.append(replace(stage, mass_kg=total, **values))
-    return replace(design, stages=tuple(stages), mass_kg=sum(one.mass_kg for one in stages))
+    return replace(design, stages=tuple(stages), mass_kg=sum(stage.mass_kg for stage in stages))
 
 
 def off_ratio(scene: Scene, design: DriveDesign) -> list[str]:
