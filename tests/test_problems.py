@@ -78,6 +78,8 @@ LONG = (
     "planetary_or_parallel",
     "idler",
     "planetary_gearhead",
+    "planetary_stage",
+    "driven_by_transmission_error",
     "planets_that_do_not_fit",
     "elevator_processes_rated",
     "three_stage_by_both",

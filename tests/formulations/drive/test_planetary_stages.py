@@ -47,7 +47,7 @@ def agree(train, posed=None):
     return best
 
 
-@pytest.mark.parametrize("seed", few(range(100), (0, 2, 9)))
+@pytest.mark.parametrize("seed", few(range(100), (2, 9)))
 def test_stages_are_those_of_every_candidate(seed):
     agree(own.some_planetary_drive(seed))
 

@@ -38,7 +38,7 @@ STEPPED = FaceWidth(F(3, 10), F(3, 4), step=F(5))
 
 
 @pytest.mark.parametrize("face", [TIED, STEPPED], ids=["tied", "stepped"])
-@pytest.mark.parametrize("helix", [0.0, 0.4])
+@pytest.mark.parametrize("helix", few([0.0, 0.4], [0.4]))
 @pytest.mark.parametrize(
     "options",
     [

@@ -72,12 +72,10 @@ SWEEPS = {  # zeta, F_a, stiffness; peaks (W, RMS), teeth part from ... to, risi
         (0.45, 1.90, 146),
     ),
 }
-SLOW = ("shaken", "touching", "light damping")
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=pytest.mark.slow) if n in SLOW else n for n in SWEEPS]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SWEEPS)
 def test_sweeps_of_an_oscillator_with_a_gap(name):
     """x'' + 2 zeta x' + k f(x) = 0.1 + F_a W^2 cos W t, k = 1 or 1 + 0.2 cos W t."""
     (ratio, shake, depth), *ways, two = SWEEPS[name]

@@ -5,6 +5,7 @@ from itertools import permutations
 
 import numpy as np
 import pytest
+from campaigns import few
 from train_of_meshes import Mesh, balances, speeds
 
 from gearopt.physics.planetary.willis import Use, efficiency, flow, ratio_parts, set_teeth
@@ -189,7 +190,7 @@ JOINED = (
 )
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", few(range(5), 2))
 def test_two_ways_agree(seed):
     """200 random trains: the linear system of all meshes against Willis and Cramer, exactly."""
     rng = np.random.default_rng(seed)

@@ -1,6 +1,7 @@
 """Finished teeth: what grinding leaves of a protuberance, and chamfered tips."""
 
 import math
+from functools import cache
 
 import pytest
 from rated_files import pair
@@ -18,6 +19,11 @@ def ground(allowance, **tables):
     made["rating"] = {k: v for k, v in made["rating"].items() if v is not None}
     made["gears"] = made["gears"] | TOOL | {"grinding_allowance": allowance} | tables
     return made
+
+
+@cache
+def rated(allowance):
+    return gearopt.rate(ground(allowance)).design["rating"]
 
 
 def by_hand(z, residual, ratio, chamfer=0):
@@ -53,10 +59,10 @@ def by_hand(z, residual, ratio, chamfer=0):
 @pytest.mark.parametrize("allowance", [0, 0.02, 0.05])
 def test_the_rest_of_the_protuberance_enters_the_tooth_form(allowance):
     """s_pr = 0.05 - q in E, by the formulas of ISO 6336-3 in `by_hand`."""
-    rating = gearopt.rate(ground(allowance)).design["rating"]
+    rating = rated(allowance)
     ratio = rating["meshes"][0]["transverse_contact_ratio"]
     found = {row["symbol"]: row for row in rating["factors"]}
-    whole = gearopt.rate(ground(0)).design["rating"]["teeth"]
+    whole = rated(0)["teeth"]
     for tooth, other in zip(rating["teeth"], whole, strict=True):
         assert tooth["span_mm"] == other["span_mm"]  # flanks are finished
         form, concentration = by_hand(tooth["teeth"], 0.05 - allowance, ratio)

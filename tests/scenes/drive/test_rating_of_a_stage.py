@@ -55,6 +55,7 @@ def test_factors_of_every_stage_are_those_of_the_rating():
 STRICTER = of_stages(ELEVATOR, "minimum_contact_safety = 1.3", "# as [rating]")
 
 
+@pytest.mark.slow
 def test_one_stage_of_its_own_lies_between():
     """Stricter on one stage than on none, less strict than on both; the limits say which."""
     first, none = solved(STRICTER), solved(ELEVATOR)
