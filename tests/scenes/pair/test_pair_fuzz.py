@@ -47,6 +47,7 @@ def random_file(rng):
 
 
 @pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("seed", range(4))
 def test_a_random_pair_is_computed_or_refused_in_a_line(seed):
     rng, computed = random.Random(f"pairs {seed}"), 0
