@@ -111,7 +111,7 @@ def test_designs_that_are_finitely_many_are_stepped_down_one_by_one(finite, name
     def solve(run, name, most, near=None):
         limits.append(dict(most))
         if not rest:
-            run.skipped.append(epsilon.Skipped(most, True))
+            run.skipped.append(epsilon.Impossible(most, True))
         return rest.pop(0) if rest else None
 
     monkeypatch.setattr(epsilon, "_solved", solve)

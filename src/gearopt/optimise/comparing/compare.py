@@ -7,7 +7,7 @@ every run ends at the same wall seconds. Start-up is measured before and belongs
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 from gearopt.errors import GearoptError, SolveError
 from gearopt.optimise.certificate import Verdict
@@ -33,6 +33,7 @@ from gearopt.optimise.scale import zero_scale
 from gearopt.optimise.solve import judge, method_of
 from gearopt.optimise.terms import Array
 
+T = TypeVar("T")
 BOUND_SECONDS = 60.0
 ROUNDING = 1e-9  # relative; a method's word that is better than the checked value by more is noted
 
@@ -211,18 +212,19 @@ def _group(
         highest is not None,
         source,
         best,
-        tuple(_row(e, runs, reference, scale) for e in members),
+        tuple(row(e, of_kinds(runs, e), reference, scale) for e in members),
         scale,
     )
 
 
-def _row(
-    entry: Entry,
-    runs: Mapping[tuple[str, str], list[Run]],
-    reference: float | None,
-    scale: float,
-) -> Row:
-    by_count, by_time = (runs.get((entry.method, kind), []) for kind in KINDS)
+def of_kinds(runs: Mapping[tuple[str, str], list[T]], entry: Entry) -> list[list[T]]:
+    """Runs of a method, by count and by time."""
+    return [runs.get((entry.method, kind), []) for kind in KINDS]
+
+
+def row(entry: Entry, runs: list[list[Run]], reference: float | None, scale: float) -> Row:
+    """A method with its runs, by count and by time, beside a reference."""
+    by_count, by_time = runs
     return Row(
         entry.method,
         entry.random,

@@ -15,8 +15,8 @@ import numpy as np
 from gearopt.errors import GearoptError, SolveError
 from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock, in_part
-from gearopt.optimise.comparing.compare import BOUND_SECONDS, clipped, compared
-from gearopt.optimise.comparing.comparison import POINTS, Comparison, Group, Row, Run, sample
+from gearopt.optimise.comparing.compare import BOUND_SECONDS, clipped, compared, of_kinds, row
+from gearopt.optimise.comparing.comparison import POINTS, Comparison, Group, Run
 from gearopt.optimise.comparing.plan import Follow, Model, Plan, Progress
 from gearopt.optimise.comparing.runs import (
     KINDS,
@@ -222,22 +222,9 @@ def _group(
         distance = igd(trial.values, values)
         return clipped(replace(trial.run, objective=missing, steps=steps, distance=distance))
 
-    def row(entry: Entry) -> Row:
-        by_count, by_time = (
-            [judged(t) for t in runs.get((entry.method, kind), [])] for kind in KINDS
-        )
-        known = 0.0 if len(values) else None
-        return Row(
-            entry.method,
-            entry.random,
-            entry.counts,
-            None if entry.refused else entry.start_up,
-            entry.refused,
-            sample(by_count, known, 0.0, by_time=False),
-            sample(by_time, known, 0.0, by_time=True),
-        )
-
-    rows = tuple(map(row, members))
+    known = 0.0 if len(values) else None
+    judged_runs = ([[judged(t) for t in part] for part in of_kinds(runs, e)] for e in members)
+    rows = tuple(row(e, each, known, 0.0) for e, each in zip(members, judged_runs, strict=True))
     samples = [s for r in rows for s in (r.equal_evaluations, r.equal_time) if s]
     missing = [r.objective for s in samples for r in s.runs if r.objective is not None]
     best = min(missing, default=None)

@@ -9,7 +9,8 @@ from gearopt.errors import SolveError
 from gearopt.optimise.box import allowed_values
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.pareto.found import Found, Point, Skipped, Step, sifted
+from gearopt.optimise.pareto.found import Found, Point, Step, sifted
+from gearopt.optimise.pareto.front import Impossible
 from gearopt.optimise.pareto.posed import VALUE, Limit, posed
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE
@@ -105,7 +106,7 @@ def _found(
     return Found(
         kept,
         complete=all_gone and bool(kept),
-        skipped=() if kept else (Skipped(caps, all_gone),),
+        skipped=() if kept else (Impossible(dict(caps), all_gone),),
         infeasible=all_gone and not kept,
         finished=all_gone,
         steps=(Step(clock.seconds, clock.evaluations, np.array([p.values for p in kept])),),

@@ -22,7 +22,8 @@ from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.form import form
 from gearopt.optimise.own_problems import PROVEN
 from gearopt.optimise.pareto import evolution
-from gearopt.optimise.pareto.found import Found, Point, Skipped, Step, sifted
+from gearopt.optimise.pareto.found import Found, Point, Step, sifted
+from gearopt.optimise.pareto.front import Impossible
 from gearopt.optimise.pareto.gaps import (
     POINT_TIE,
     TRIALS,
@@ -95,7 +96,7 @@ class Run:
     wanted: int = 0
     built: Built = field(default_factory=dict)
     points: list[Point] = field(default_factory=list)
-    skipped: list[Skipped] = field(default_factory=list)
+    skipped: list[Impossible] = field(default_factory=list)
     steps: list[Step] = field(default_factory=list)
     widths: dict[str, float] = field(default_factory=dict)
     lines: list["Line"] = field(default_factory=list)
@@ -352,7 +353,7 @@ def _solved(state: Run, name: str, most: Caps, near: Array | None = None) -> Poi
                 result, point = replace(again, bound=bound), other
     _noted(state, name, most, result, None if point is None else float(point.values[place]))
     if point is None:
-        state.skipped.append(Skipped(most, result.status == "infeasible"))
+        state.skipped.append(Impossible(dict(most), result.status == "infeasible"))
         state.none = state.none or result
     return point
 

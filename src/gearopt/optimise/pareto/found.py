@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.frozen import dataclass
+from gearopt.optimise.pareto.front import Impossible
 from gearopt.optimise.pareto.measures import unbeaten
 from gearopt.optimise.terms import Array
 
@@ -24,14 +25,6 @@ class Point:
     proven: bool = False
     bound: float | None = None
     slopes: Array | None = None
-
-
-@dataclass(frozen=True)
-class Skipped:
-    """Limits of the other objectives under which no design was found; proven: there is none."""
-
-    limits: Mapping[str, float]
-    proven: bool
 
 
 @dataclass(frozen=True)
@@ -62,7 +55,7 @@ class Found:
     error: float | None = None
     epsilon: float | None = None
     beaten: Array = field(default_factory=lambda: np.empty((0, 0)))
-    skipped: tuple[Skipped, ...] = ()
+    skipped: tuple[Impossible, ...] = ()
     infeasible: bool = False
     unknown: tuple[tuple[float, float], ...] = ()
     finished: bool = True

@@ -13,7 +13,7 @@ from gearopt.optimise.certified import design, limits_of
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.pareto.found import Found, Point
-from gearopt.optimise.pareto.front import Front, FrontPoint, Growth, Impossible
+from gearopt.optimise.pareto.front import Front, FrontPoint, Growth
 from gearopt.optimise.pareto.measures import hypervolume, picks, reference, unbeaten
 from gearopt.optimise.pareto.objectives import Objective
 from gearopt.optimise.pareto.posed import posed
@@ -52,7 +52,7 @@ def judged(
         epsilon=made.epsilon,
         picks=tuple(picks(values, [o.name for o in objectives], weights)),
         beaten=tuple(tuple(map(float, row)) for row in made.beaten),
-        impossible=tuple(Impossible(dict(s.limits), s.proven) for s in made.skipped),
+        impossible=made.skipped,
         unknown=tuple((_finite(low), _finite(high)) for low, high in made.unknown),
         corner=tuple(map(float, corner)),
         hypervolume=whole,
