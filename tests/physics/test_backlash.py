@@ -10,6 +10,7 @@ from gearopt.physics.backlash import (
     normal_backlash,
     output_error,
     pitch_error_angle,
+    play_backlash,
     radial_backlash,
     thickness_backlash,
     transverse_pressure_angle,
@@ -78,3 +79,43 @@ def test_minimum_backlash_of_the_guide_line_is_no_servo_target():
     j_t = j_bn / normal_backlash(1.0, ALPHA)
     assert j_bn == pytest.approx(0.0695, abs=6e-5) and j_t == pytest.approx(0.0740, abs=6e-5)
     assert math.degrees(backlash_angle(j_t, 104.0)) == pytest.approx(0.0815, abs=6e-5)
+
+
+def turns(shift):
+    """Ends between which a wheel can turn about a shifted centre, pinion held [rad].
+
+    By the flanks alone, point by point: 26 and 208 teeth of module 0.5 mm. shift (..., 2) [mm].
+    """
+    r, base = np.array([6.5, 52.0]), np.array([6.5, 52.0]) * math.cos(ALPHA)
+    radii = np.linspace(base[0] * 1.002, 7.2, 40001)
+
+    def involute(radius, of):
+        tangent = np.sqrt((radius / of) ** 2 - 1.0)
+        return tangent - np.arctan(tangent)
+
+    there = math.tan(ALPHA) - ALPHA
+    half = 0.5 * math.pi / 26.0 + there - involute(radii, base[0])  # of the pinion's tooth
+    x, y = radii * np.cos(half), radii * np.sin(half)
+    ends = []
+    for side in (1.0, -1.0):
+        across, up = r.sum() + shift[0] - x, side * y - shift[1]
+        gap = 0.5 * math.pi / 208.0 - there + involute(np.hypot(across, up), base[1])
+        ends.append((side * np.arctan2(up, across) - gap).max())
+    return ends[0], -ends[1]
+
+
+def test_an_axis_with_play_is_found_by_the_flanks_alone():
+    """An axis anywhere within its play; displaced radially; eccentric, over one turn."""
+    size, r = 1e-3, 52.0
+    tight = np.subtract(*turns((0.0, 0.0))[::-1])
+    assert tight == pytest.approx(0.0, abs=1e-8)
+    apart = np.subtract(*turns((size, 0.0))[::-1])
+    assert r * apart == pytest.approx(radial_backlash(size, ALPHA), rel=1e-3)
+    around = np.linspace(0.0, 2.0 * math.pi, 361)
+    ends = np.array([turns((size * math.cos(t), size * math.sin(t))) for t in around])
+    assert r * (ends[:, 1].max() - ends[:, 0].min()) == pytest.approx(
+        play_backlash(size, ALPHA), rel=1e-3
+    )
+    pitch = pitch_error_angle(2.0 * size / math.cos(ALPHA), 2.0 * r)
+    assert np.ptp(ends, axis=0) == pytest.approx([pitch, pitch], rel=1e-3)
+    assert play_backlash(1.0, ALPHA) * math.sin(ALPHA) == pytest.approx(radial_backlash(1.0, ALPHA))

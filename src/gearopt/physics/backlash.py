@@ -23,6 +23,17 @@ def radial_backlash(radial_displacement: Any, pressure_angle: Any, helix_angle: 
     )
 
 
+def play_backlash(play: Any, pressure_angle: Any, helix_angle: Any = 0.0) -> Any:
+    """Return the circumferential lost motion 2 delta/cos(alpha_t) [mm] of an axis with play.
+
+    play delta [mm]: radius of the circle in which the axis is free. As the torque reverses the
+    force of the teeth takes it by delta along either line of action, whose length is
+    j_t cos(alpha_t). Kinematics; `radial_backlash` of delta is what opens without a force, less by
+    sin(alpha_t). Normal pressure_angle, helix_angle [rad].
+    """
+    return 2.0 * play / np.cos(transverse_pressure_angle(pressure_angle, helix_angle))
+
+
 def thickness_backlash(
     pinion_allowance: Any,
     wheel_allowance: Any,

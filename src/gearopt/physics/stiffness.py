@@ -57,6 +57,16 @@ def mesh_compliance(line_stiffness: Any, face_width: Any, diameter: Any) -> Any:
     return 4.0 / (line_stiffness * face_width * diameter**2)
 
 
+def windup_variation(torque: Any, compliance: Any, variation: Any) -> Any:
+    """Return T c v/(1 - v^2/4) [rad], by which the windup of a mesh of varying stiffness varies.
+
+    torque T [N mm] at the gear of the compliance c [rad/(N mm)], which is that of the mean
+    stiffness k; variation 0 <= v < 2: over a mesh the stiffness lies between k (1 - v/2) and
+    k (1 + v/2). Peak to peak, T c/(1 - v/2) - T c/(1 + v/2).
+    """
+    return torque * compliance * variation / (1.0 - 0.25 * variation**2)
+
+
 def output_compliance(compliances: Iterable[Any], downstream_ratios: Iterable[Any]) -> Any:
     """Return the compliance sum_i c_i/n_i^2 [rad/(N mm)] of springs in series, at the output.
 

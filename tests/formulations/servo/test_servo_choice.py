@@ -10,10 +10,11 @@ from servo_trains import PAPER
 from uncompiled import uncompiled
 
 from gearopt.formulations.servo import choice, servo_box, split
-from gearopt.formulations.servo.choice import Choice, Springs, train_problem
+from gearopt.formulations.servo.choice import Choice, train_problem
 from gearopt.formulations.servo.ratio import Drive, ServoDuty
 from gearopt.formulations.servo.servo_box import Room, ServoBox, first_that_fits
 from gearopt.formulations.servo.split.servo_train import pairs
+from gearopt.formulations.servo.split.springs import Springs
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve

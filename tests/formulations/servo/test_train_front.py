@@ -12,11 +12,12 @@ from servo_trains import PAPER
 
 from gearopt.formulations.servo import front as train_front
 from gearopt.formulations.servo import split
-from gearopt.formulations.servo.choice import Choice, Springs
+from gearopt.formulations.servo.choice import Choice
 from gearopt.formulations.servo.front import front, front_problem
 from gearopt.formulations.servo.ratio import Drive, ServoDuty
 from gearopt.formulations.servo.servo_box import Room, first_that_fits, of_train
 from gearopt.formulations.servo.split.servo_train import pairs
+from gearopt.formulations.servo.split.springs import Springs
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.pareto.tradeoff import found
 from gearopt.optimise.result import Budget

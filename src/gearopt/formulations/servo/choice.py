@@ -15,11 +15,12 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.formulations.servo import servo_box, split
 from gearopt.formulations.servo.servo_box import DEEP
-from gearopt.formulations.servo.servo_design import GOALS, Spring, StiffnessDesign
+from gearopt.formulations.servo.servo_design import GOALS
 from gearopt.formulations.servo.split import teeth
 from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.formulations.servo.split.numbers import posed
 from gearopt.formulations.servo.split.servo_train import ServoTrain, pairs
+from gearopt.formulations.servo.split.springs import Springs
 from gearopt.formulations.servo.split.teeth import point
 from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock, in_part, of_others
@@ -27,16 +28,6 @@ from gearopt.optimise.kernels import kernel
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms
-from gearopt.physics.gears import GearPair
-from gearopt.physics.stiffness import (
-    lewis_form_factor,
-    locked_frequency,
-    mesh_compliance,
-    output_compliance,
-    shaft_compliance,
-    specific_pair_stiffness,
-    tooth_factor,
-)
 
 KERNEL = "gearopt.formulations.servo.choice_kernel"
 TEETH = "gearopt.formulations.servo.split.teeth_kernel"
@@ -127,70 +118,6 @@ RANDOM, COUNTS = teeth.RANDOM, teeth.COUNTS  # of the methods that are passed on
 SLACK = teeth.ROUNDING, teeth.FLAT  # of an objective, and of that of a duty
 WANTED = {"stiffness": "has the stiffness that is required", "box": "fits the box"}
 TIE = 1e-9  # relative: a minimum backlash that is met exactly
-SPRINGS = ("mesh of stage 2", "shaft between the stages", "mesh of stage 1")
-
-
-@dataclass(frozen=True)
-class Springs:
-    """Given meshes and shaft between the stages; lengths in mm, moduli in MPa.
-
-    shaft: diameter and length. line_stiffness: of a mesh; None where it follows from the gears'
-    youngs_modulus and teeth. load_inertia [t mm2] and load_torque [N mm]: None for none. minimum:
-    stiffness of the output [N mm/rad], None where none is required.
-    """
-
-    shear_modulus: float
-    shaft: tuple[float, float]
-    line_stiffness: float | None = None
-    youngs_modulus: float = math.nan
-    load_inertia: float | None = None
-    load_torque: float | None = None
-    minimum: float | None = None
-
-    def compliances(self, pairs: Pairs) -> tuple[Any, Any, Any]:
-        """Return compliances [rad/(N mm)] at the output, in the order of SPRINGS."""
-        first, second = pairs
-        twist = shaft_compliance(self.shear_modulus, *self.shaft)
-        return (
-            self._mesh(second),
-            twist / second.ratio**2,
-            self._mesh(first) / second.ratio**2,
-        )
-
-    def _mesh(self, pair: GearPair) -> Any:
-        """Return the compliance [rad/(N mm)] of a mesh, its line stiffness given or by Lewis."""
-        stiffness: Any = self.line_stiffness
-        if self.line_stiffness is None:
-            pinion, wheel = (tooth_factor(lewis_form_factor(g.teeth) / math.pi) for g in pair.gears)
-            stiffness = specific_pair_stiffness(
-                self.youngs_modulus, pinion, self.youngs_modulus, wheel
-            )
-        return mesh_compliance(stiffness, pair.face_width, pair.wheel.reference_diameter)
-
-    def numbers(self, face_width: float) -> Array:
-        """Return `spring` of a `Kept`; face_width [mm]."""
-        twist = shaft_compliance(self.shear_modulus, *self.shaft)
-        line, elastic = self.line_stiffness or 0.0, self.youngs_modulus
-        return np.array([line, elastic, face_width, twist, self.minimum or 0.0])
-
-    def output_stiffness(self, pairs: Pairs) -> Any:
-        """Return the stiffness at the output [N mm/rad]."""
-        return 1.0 / output_compliance(self.compliances(pairs), (1.0, 1.0, 1.0))
-
-    def design(self, pairs: Pairs) -> StiffnessDesign:
-        """Return stiffness, frequency and windup of a train, with the share of every spring."""
-        parts = [float(c) for c in self.compliances(pairs)]
-        total = math.fsum(parts)
-        inertia, torque = self.load_inertia, self.load_torque
-        return StiffnessDesign(
-            output_Nm_per_rad=1e-3 / total,
-            springs=tuple(
-                Spring(name, part / total, 1e-3 / part)
-                for name, part in zip(SPRINGS, parts, strict=True)
-            ),
-            frequency_Hz=None if inertia is None else float(locked_frequency(1.0 / total, inertia)),
-            windup_deg=None if torque is None else math.degrees(torque * total),
-        )
 
 
 @dataclass(frozen=True)

@@ -189,12 +189,15 @@ class RatioDesign:
 
 @dataclass(frozen=True)
 class ErrorSource:
-    """One deviation at its worst, and its error at the output; kind: backlash or pitch."""
+    """One deviation at its worst, and its error at the output; kind: backlash, pitch or elastic.
+
+    tolerance: None of an elastic one, which is of the stiffness of a mesh.
+    """
 
     source: str
     kind: str
     stage: int
-    tolerance_mm: float
+    tolerance_mm: float | None
     error_deg: float
 
 
@@ -219,12 +222,16 @@ class Spring:
 
 @dataclass(frozen=True)
 class StiffnessDesign:
-    """Stiffness at the output; frequency and windup where load and torque are given."""
+    """Stiffness at the output; frequency and windup where load and torque are given.
+
+    All where meshes are softest; windup_variation: over a mesh, where their stiffness varies.
+    """
 
     output_Nm_per_rad: float
     springs: tuple[Spring, ...]
     frequency_Hz: float | None = None
     windup_deg: float | None = None
+    windup_variation_deg: float | None = None
 
 
 @dataclass(frozen=True)

@@ -122,7 +122,7 @@ def given_gears(scene: Scene) -> Pairs | None:
 
 def errors(scene: Scene, gears: Pairs) -> tuple[ErrorSource, ...]:
     """Return every source of error at the output, all at their worst; they add up."""
-    return tuple(
+    deviations = tuple(
         ErrorSource(
             source=s.name,
             kind=s.kind,
@@ -132,6 +132,16 @@ def errors(scene: Scene, gears: Pairs) -> tuple[ErrorSource, ...]:
         )
         for s in scene.sources
     )
+    return deviations + tuple(
+        ErrorSource(f"varying stiffness of mesh {k}", "elastic", k, None, math.degrees(varied))
+        for k, varied in enumerate(elastic(scene, gears), 1)
+    )
+
+
+def elastic(scene: Scene, gears: Pairs) -> tuple[float, ...]:
+    """Return the error [rad] of either mesh whose stiffness varies; nothing where none does."""
+    springs = scene.elastic
+    return () if springs is None else tuple(map(float, springs.variations(gears)))
 
 
 def backlashes(scene: Scene) -> tuple[MeshBacklash, ...]:
@@ -179,7 +189,7 @@ def described(
     n, table = first.ratio * second.ratio, scene.train
     train = scene.servo_train() if train is None and table is not None else train
     sources = scene.sources if sources is None else sources
-    error = sum(s.most * sensitivity(gears, s) for s in sources)
+    error = sum(s.most * sensitivity(gears, s) for s in sources) + sum(elastic(scene, gears))
     design = TrainDesign(
         stages=(_stage(first), _stage(second)),
         ratio=n,
@@ -437,7 +447,7 @@ def with_errors(scene: Scene, ask: Ask, known: Result | None) -> Result:
     rows, springs = errors(scene, gears), scene.springs
     sums = {
         f"{kind}_deg": sum(row.error_deg for row in rows if row.kind == kind)
-        for kind in ("backlash", "pitch")
+        for kind in dict.fromkeys(("backlash", "pitch", *(row.kind for row in rows)))
         if rows
     }
     design = ServoDesign(

@@ -42,6 +42,7 @@ SHAFT_DIAMETERS = tuple(Fraction(k, 20) for k in (4, 5, 6, 8, 10, 12, 14, 16, 18
 LIMITS: tuple[tuple[Path, int], ...] = (  # of a file, and the way that is easier
     (("stiffness", "frequency"), -1),
     (("stiffness", "windup"), 1),
+    (("stiffness", "mesh_variation"), -1),
     (("space", "width"), 1),
     (("space", "height"), 1),
     (("space", "motor_diameter"), -1),

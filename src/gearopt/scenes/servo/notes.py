@@ -113,6 +113,13 @@ def _of_train(scene: Scene) -> list[str]:
             "twisted over its length; bearings, housing, motor and output shaft are rigid, and the "
             "motor is locked."
         )
+        if scene.stiffness.mesh_variation is not None:
+            sentences.append(
+                f"The stiffness of a mesh varies by {100 * float(scene.stiffness.mesh_variation):g}"
+                " % of its mean: stiffness, frequency and windup are those of the softest meshes, "
+                "both at once; what the windup by load_torque varies by is an error, of both "
+                "meshes together, whatever their phases."
+            )
         if scene.stiffness.line_stiffness is None:
             sentences.append(
                 "Line stiffness of a mesh after Buckingham and Lewis: formula not checked against "

@@ -4,8 +4,9 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
-from gearopt.formulations.servo.choice import Springs, best_kept
+from gearopt.formulations.servo.choice import best_kept
 from gearopt.formulations.servo.split.servo_train import pairs
+from gearopt.formulations.servo.split.springs import Springs
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 from gearopt.physics.stiffness import locked_frequency

@@ -7,10 +7,11 @@ from typing import Any
 from pydantic import Field, model_validator
 
 from gearopt.formulations.servo import servo_box
-from gearopt.formulations.servo.choice import Choice, Springs
+from gearopt.formulations.servo.choice import Choice
 from gearopt.formulations.servo.ratio import ServoDuty
 from gearopt.formulations.servo.split import ServoTrain, StiffTrain
 from gearopt.formulations.servo.split.bodies import Pairs
+from gearopt.formulations.servo.split.springs import Springs
 from gearopt.formulations.servo.tolerance.stack import RUN_OUT
 from gearopt.physics.stiffness import stiffness_of_frequency
 from gearopt.scenes.reading.fields import ProblemFile, refuse
@@ -300,7 +301,15 @@ class Scene(ProblemFile):
             sector=float(table.sector),
             duty=self.servo_duty(),
             bodies=bodies(table, shaft, self.space),
+            elastic=self.elastic,
         )
+
+    @property
+    def elastic(self) -> Springs | None:
+        """Return springs whose windup varies, an error beside those of deviations; None: none."""
+        springs = self.springs
+        varies = springs is not None and springs.variation and springs.load_torque is not None
+        return springs if varies and self.sources else None
 
     @property
     def springs(self) -> Springs | None:
@@ -322,6 +331,7 @@ class Scene(ProblemFile):
             load_inertia=inertia,
             load_torque=None if torque is None else torque.value,
             minimum=max(needed, default=None),
+            variation=float(table.mesh_variation or 0),
         )
 
     def choice(self, boxed: bool = True) -> Choice:
@@ -366,7 +376,7 @@ class Scene(ProblemFile):
         }
         return StiffTrain(
             stiffness=springs.minimum,
-            line_stiffness=springs.line_stiffness,
+            line_stiffness=springs.softest * springs.line_stiffness,
             shear_modulus=springs.shear_modulus,
             ratio=(float(train.ratios[0]), float(train.ratios[1])),
             module=module,
@@ -379,5 +389,6 @@ class Scene(ProblemFile):
             inertia=table.inertia.value,
             output=float(train.bodies.output_shaft),
             motor=float(train.bodies.motor),
+            elastic=train.elastic,
             **numbers,
         )

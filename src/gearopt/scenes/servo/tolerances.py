@@ -25,7 +25,7 @@ from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array, Terms, Var
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.reading.ask import Ask
-from gearopt.scenes.servo.axis_steps import added, gears_of, sensitivity
+from gearopt.scenes.servo.axis_steps import added, elastic, gears_of, sensitivity
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import BudgetTable, Price, Source
 
@@ -63,8 +63,12 @@ def stack(scene: Scene, gears: Pairs) -> Stack:
 
 
 def start(scene: Scene, gears: Pairs) -> float:
-    """Return the error [deg] of two-sided deviations at their lower ends."""
-    return math.degrees(sum(s.start * sensitivity(gears, s) for s in scene.sources))
+    """Return the error [deg] that no tolerance changes.
+
+    It is that of two-sided deviations at their lower ends, and of meshes whose stiffness varies.
+    """
+    lower = sum(s.start * sensitivity(gears, s) for s in scene.sources)
+    return math.degrees(lower + sum(elastic(scene, gears)))
 
 
 def _closing(scene: Scene, gears: Pairs) -> list[ErrorBudget]:
@@ -167,7 +171,9 @@ def spent(scene: Scene, gears: Pairs) -> Outcome | None:
     ]
     if not small:
         return None
-    text = f"the lower allowances alone give an error of {lost:.5g} degrees, which uses up a budget"
+    varied = " and the varying stiffness of meshes" if scene.elastic is not None else ""
+    text = f"the lower allowances{varied} alone give an error of {lost:.5g} degrees, which uses up "
+    text += "a budget"
     proof = {"method": "closed form", "sentence": f"Proof: {text}."}
     return Outcome(None, infeasible=True, proof=proof, message=text)
 

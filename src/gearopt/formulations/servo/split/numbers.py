@@ -25,8 +25,8 @@ class Numbers(NamedTuple):
     unit (K,), output: what keeps gear 2 clear of the output shaft (`bodies.MinimumTeeth`). low,
     high: total ratio. bore; tip: largest reference diameter of gear 4 [mm]. load: minimum d m [mm2]
     of gear 4, by the teeth of its pinion, under the output torque; tooth: the same under 1 N mm.
-    disc_mass [kg/mm2] and disc_inertia [t/mm2]: per d^2 and
-    per d^4. duty: see `duty_numbers`.
+    disc_mass [kg/mm2] and disc_inertia [t/mm2]: per d^2 and per d^4. elastic: of
+    `Springs.varying`, 0 for none. duty: see `duty_numbers`.
     """
 
     least: Any
@@ -43,6 +43,7 @@ class Numbers(NamedTuple):
     output: int
     module: Array
     lost: Array
+    elastic: Array
     error: float
     load: Array
     tooth: Array
@@ -99,6 +100,7 @@ def numbers(train: ServoTrain, moved: bool = False) -> Numbers:
         **_teeth(train),
         module=np.array([float(m) for m in train.modules]),
         lost=np.array(train.lost_motion or (0.0, 0.0)),
+        elastic=np.zeros(4) if train.elastic is None else train.elastic.varying(width),
         error=float(train.error),
         load=train.output_torque * tooth,
         tooth=tooth,

@@ -28,8 +28,11 @@ def relaxation(train: ServoTrain, goal: str = "inertia") -> Problem:
 
     Variables, of both stages: pinion_diameter [mm], ratio, module [mm]; those of the duty's own
     problem where its goal is asked for. The form factor of either pinion is that of the maximum
-    number of teeth, which no pinion exceeds; `clear_rows` relax what gears keep clear of.
+    number of teeth, which no pinion exceeds; `clear_rows` relax what gears keep clear of. Meshes
+    whose windup is an error are as stiff as with any teeth.
     """
+    if train.elastic is not None:
+        train = replace(train, elastic=train.elastic.stiffest())
     low, high = (float(r) for r in train.ratios)
     moved = _duty_problem(train, goal)
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from gearopt.formulations.servo.ratio.duty import ServoDuty
 from gearopt.formulations.servo.split.bodies import TIP, Bodies, Pairs
+from gearopt.formulations.servo.split.springs import Springs
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.laws.lewis import LEWIS
 from gearopt.frozen import dataclass
@@ -34,7 +35,8 @@ class ServoTrain:
     delta_p of each stage [mm], so that its error at the wheel is that over the wheel's diameter;
     None: the error is not known. error: largest at the output [rad]. duty: what the train's inertia
     and ratio are judged by, if its goal is asked for. bodies: shafts, hub and motor that gears keep
-    clear of; None: not checked.
+    clear of; None: not checked. elastic: springs whose windup varies under a load torque, which is
+    an error too; None: not counted.
     """
 
     ratio: Fraction
@@ -54,6 +56,7 @@ class ServoTrain:
     sector: float = 1.0
     duty: ServoDuty | None = None
     bodies: Bodies | None = None
+    elastic: Springs | None = None
 
     def __post_init__(self) -> None:
         if not self.ratio > 0 or not 0 <= self.tolerance < 1:
@@ -159,15 +162,16 @@ def gear_mass(density: Any, pairs: Pairs, sector: Any) -> Any:
     return 1000.0 * (first + second)
 
 
-def train_error(lost_motion: tuple[Any, Any], pairs: Pairs) -> Any:
+def train_error(lost_motion: tuple[Any, Any], pairs: Pairs, elastic: Springs | None = None) -> Any:
     """Return the error [rad] at the output: lost motion over wheel diameter, of stage 1 over n_2.
 
-    lost_motion: 2 j_t + 2 delta_p of each stage [mm].
+    lost_motion: 2 j_t + 2 delta_p of each stage [mm]. elastic: springs whose windup varies.
     """
     angles = tuple(
         lost / pair.wheel.reference_diameter for lost, pair in zip(lost_motion, pairs, strict=True)
     )
-    return output_error(angles, (pairs[1].ratio, 1.0))
+    error = output_error(angles, (pairs[1].ratio, 1.0))
+    return error if elastic is None else error + sum(elastic.variations(pairs))
 
 
 def objectives(train: ServoTrain, names: tuple[str, ...], pairs: Pairs) -> dict[str, Any]:
@@ -177,7 +181,7 @@ def objectives(train: ServoTrain, names: tuple[str, ...], pairs: Pairs) -> dict[
     inertia = train_inertia(train.density, pairs, train.shaft, train.sector)
     values = {"inertia": inertia, "mass": gear_mass(train.density, pairs, train.sector)}
     if train.lost_motion is not None:
-        values["error"] = train_error(train.lost_motion, pairs)
+        values["error"] = train_error(train.lost_motion, pairs, train.elastic)
     if train.duty is not None and train.duty.goal in names:
         values[train.duty.goal] = train.duty.value(pairs[0].ratio * pairs[1].ratio, inertia)
     return {name: values[name] for name in names}

@@ -13,6 +13,7 @@ from gearopt.formulations.servo.split.servo_train import (
     train_error,
     train_inertia,
 )
+from gearopt.formulations.servo.split.springs import Springs
 from gearopt.formulations.strength.laws.lewis import lewis
 from gearopt.frozen import dataclass
 from gearopt.optimise.problem import Problem
@@ -60,6 +61,7 @@ class StiffTrain:
     sector: float = 1.0
     output: float = 0.0
     motor: float = 0.0
+    elastic: Springs | None = None
 
 
 def stiff(train: StiffTrain) -> Problem:
@@ -118,7 +120,7 @@ def _terms(train: StiffTrain, x: Any, p: Any) -> Terms:
         "shaft_diameter_low": train.shaft_diameter / x.shaft_diameter,
     }
     if train.lost_motion is not None and math.isfinite(train.error):
-        limits["error"] = train_error(train.lost_motion, both) / p.error
+        limits["error"] = train_error(train.lost_motion, both, train.elastic) / p.error
     limits |= clear_rows(x.shaft_diameter, train.output or None, train.motor or None, both)
     return Terms({"mass": gears + 1000.0 * long}, limits, equal=equal)
 

@@ -110,9 +110,10 @@ def _error_table(
 
     rows = []
     for e in sources:
-        size = measures.of(e.tolerance_mm, "um")
+        size = None if e.tolerance_mm is None else measures.of(e.tolerance_mm, "um")
         place = Cell(e.stage, number(e.stage), short=f"stage {e.stage}")
-        rows.append(row(e.source, e.kind, e.error_deg, place, Cell(size, f"{size:.2f}")))
+        width = Cell(size, "" if size is None else f"{size:.2f}")
+        rows.append(row(e.source, e.kind, e.error_deg, place, width))
     rows.append(row("sum", "", total, "", ""))
     heads += ["error at the output [°]", "'", "of the sum, %"]
     return Table("errors", heads, rows, folded=True, terminal_only=("'", "sum"), short=short)
@@ -147,11 +148,10 @@ def _steps(
 
 
 def _hover_text(source: ErrorSource, measures: Measures) -> str:
-    tolerance = f"{measures.of(source.tolerance_mm, 'um'):.4g} {measures.unit('um')}"
-    return (
-        f"{escape(source.source)}: {degrees(source.error_deg)}, {arc_minutes(source.error_deg)}, "
-        f"tolerance {tolerance}"
-    )
+    text = f"{escape(source.source)}: {degrees(source.error_deg)}, {arc_minutes(source.error_deg)}"
+    if source.tolerance_mm is None:
+        return text
+    return f"{text}, tolerance {measures.of(source.tolerance_mm, 'um'):.4g} {measures.unit('um')}"
 
 
 def _by_kind(sources: Sequence[ErrorSource], total: float) -> tuple[str, ...]:

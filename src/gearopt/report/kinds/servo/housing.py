@@ -45,6 +45,8 @@ def stiffness(result: Result, measures: Measures) -> Section | None:
     tiles = []
     if chain.windup_deg is not None:
         tiles.append(Tile("windup", degrees(chain.windup_deg), arc_minutes(chain.windup_deg)))
+    if (varied := chain.windup_variation_deg) is not None:
+        tiles.append(Tile("windup over a mesh, varies by", degrees(varied), arc_minutes(varied)))
     springs = sorted(chain.springs, key=lambda s: s.compliance_share)
     table, words = _springs(springs[::-1], measures), _stiffness_words(chain, measures)
     return Section(
@@ -101,6 +103,8 @@ def _stiffness_words(chain: StiffnessDesign, measures: Measures) -> str:
         words += f"; the load swings at {number(chain.frequency_Hz)} Hz, motor locked"
     if chain.windup_deg is not None:
         words += f"; windup {degrees(chain.windup_deg)} ({arc_minutes(chain.windup_deg)})"
+    if chain.windup_variation_deg is not None:
+        words += f", of which {degrees(chain.windup_variation_deg)} come and go over a mesh"
     return f"{words}."
 
 

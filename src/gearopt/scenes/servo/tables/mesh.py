@@ -15,6 +15,7 @@ from gearopt.frozen import dataclass
 from gearopt.physics.backlash import (
     backlash_angle,
     pitch_error_angle,
+    play_backlash,
     radial_backlash,
     thickness_backlash,
 )
@@ -33,6 +34,10 @@ RADIAL = {  # key -> words; one-sided radial displacements
     "pinion_bearing_run_out": "bearing run-out of pinion",
     "wheel_bearing_run_out": "bearing run-out of wheel",
 }
+PLAY = {  # in which an axis follows the force of the teeth
+    "pinion_bearing_fit": "bearing fit of pinion",
+    "wheel_bearing_fit": "bearing fit of wheel",
+}
 THICKNESS = {
     "pinion_thickness": "tooth thickness of pinion",
     "wheel_thickness": "tooth thickness of wheel",
@@ -42,7 +47,7 @@ PITCH = {
     "pinion_pitch": "pitch of pinion",
     "wheel_pitch": "pitch of wheel",
 }
-WORDS = RADIAL | THICKNESS | PITCH
+WORDS = RADIAL | PLAY | THICKNESS | PITCH
 LARGEST_FACTOR = Fraction(1000)  # of a cost and of a factor
 GEARS = ("module", "pinion_teeth", "wheel_teeth")
 
@@ -83,9 +88,9 @@ class Source:
 class Mesh(Table):
     """The deviations of a gear pair, one table per stage, from the motor on; all count at once.
 
-    Radial deviations open the backlash 2 tan(alpha) times, thinner teeth once. With module,
-    pinion_teeth and wheel_teeth the gears are given: beside [train] they are compared with the best
-    ones, without it tolerances are for them.
+    Radial deviations open the backlash 2 tan(alpha) times, thinner teeth once, loose fits are lost
+    motion 2/cos(alpha) times. With module, pinion_teeth and wheel_teeth the gears are given: beside
+    [train] they are compared with the best ones, without it tolerances are for them.
     """
 
     module: Annotated[Quantity | None, quantity("module", "0.5 mm")] = Field(
@@ -115,6 +120,13 @@ class Mesh(Table):
     )
     pinion_bearing_run_out: Deviation = _deviation("Half the run-out of the pinion's bearings")
     wheel_bearing_run_out: Deviation = _deviation("Half the run-out of the wheel's bearings")
+    pinion_bearing_fit: Deviation = _deviation(
+        "Half the largest clearance of the fits of the pinion's bearings, of shaft and housing "
+        "together, in which its axis follows the force of the teeth"
+    )
+    wheel_bearing_fit: Deviation = _deviation(
+        "Half the largest clearance of the fits of the wheel's bearings, likewise"
+    )
     pinion_thickness: Allowance = _deviation(
         "Maximum deviation of the pinion's tooth thickness below nominal (lower allowance); "
         'or both, as "-0.02/-0.05 mm"'
@@ -238,7 +250,9 @@ def angles_per_mm(pressure_angle: float) -> dict[str, float]:
     """Angles [rad] of a gear of 1 mm by 1 mm of every deviation; pressure_angle [rad]."""
     radial = backlash_angle(radial_backlash(1.0, pressure_angle), 1.0)
     thickness = backlash_angle(thickness_backlash(-1.0, 0.0, 0.0, pressure_angle), 1.0)
-    each = ((RADIAL, radial), (THICKNESS, thickness), (PITCH, pitch_error_angle(1.0, 1.0)))
+    play = backlash_angle(play_backlash(1.0, pressure_angle), 1.0)
+    pitch = pitch_error_angle(1.0, 1.0)
+    each = ((RADIAL, radial), (PLAY, play), (THICKNESS, thickness), (PITCH, pitch))
     return {name: float(angle) for names, angle in each for name in names}
 
 

@@ -151,6 +151,12 @@ class Stiffness(Table):
     youngs_modulus: Annotated[Quantity | None, quantity("stress", "206 GPa")] = Field(
         None, description="Young's modulus of the gears: a mesh's stiffness then follows from teeth"
     )
+    mesh_variation: Annotated[Fraction | None, number("50 %", 0, 1, percent=True)] = Field(
+        None,
+        description="Variation of the stiffness of a mesh while teeth pass through it, largest "
+        "less smallest over the mean, which the keys above then give: limits hold where it is "
+        "smallest, and the windup by load_torque that varies is an error",
+    )
     frequency: Annotated[Quantity | None, quantity("frequency", "200 Hz")] = Field(
         None, description="Minimum natural frequency of the load, motor locked; needs [load]"
     )
