@@ -40,6 +40,7 @@ SENTENCES = (
     words.repeated,
     words.about_angles,
     words.about_stiffness,
+    words.about_section_2,
     words.about_meshes,
     words.about_standards,
     beside.about_statistics,

@@ -62,6 +62,8 @@ ANGLES = {  # sections 3 and 3.1, degrees
     "both at the output": "0.091",
 }
 K_12, K_34, K_SHAFT, K_TS = 1.8e8, 3.8e8, 0.47e8, 1.17e6  # gf cm/rad, section 3.2
+FITS = (2.0, 5.0), (0.0, 3.0)  # um, section 2.3: bearing in housing, on shaft
+VARIATION = 0.5  # section 2.1, of the stiffness over a mesh
 LOAD_GFCM = 4300.0  # 4.3 kgf cm
 LOAD = LOAD_GFCM * GF_CM
 ELASTIC, ELASTIC_AGAIN, SENSOR = 0.0037, 0.003, 0.0004  # called degrees

@@ -219,6 +219,36 @@ def about_stiffness():
     ]
 
 
+def about_section_2():
+    """Windup and frequency with both meshes at either end; fits by the circle of the axis."""
+    (last, shaft, first), (_, n, _) = youn.springs()
+    ends = [1.0 - 0.5 * youn.VARIATION, 1.0 + 0.5 * youn.VARIATION]
+    soft, hard = (last / e + (shaft + first / e) / n**2 for e in ends)
+    soft_turn, hard_turn = (math.degrees(youn.LOAD * c) for c in (soft, hard))
+    low, high = ((1.0 / (c * youn.J_L)) ** 0.5 / (2.0 * math.pi) for c in (soft, hard))
+    (housing, case), (seat, ring) = youn.FITS
+    play = 0.5 * (case + ring)
+    both = sum(2.0 * 1e-3 * play / (0.5 * d) / n for d, n in ((48.0, 8.0), (104.0, 1.0)))
+    fits = math.degrees(2.0 * both / math.cos(youn.ALPHA))
+    apart = math.degrees(2.0 * both * math.tan(youn.ALPHA))
+    backlash = angles(*TABLE_4)["backlash at the output"]
+    return [
+        "Section 2.1 says, after no. 6, that the stiffness of teeth in contact varies by about "
+        f"{100 * youn.VARIATION:g} % over a mesh",
+        "2/cos(alpha) of this is lost motion",
+        f"From {100 * ends[0]:g} to {100 * ends[1]:g} % of the mean",
+        f"winds the train by {soft_turn:.6f} degrees where both meshes are softest, of which "
+        f"{soft_turn - hard_turn:.6f} degrees come and go, and the frequency lies between "
+        f"{low:.1f} and {high:.1f} Hz",
+        f"{housing:g} to {case:g} µm between bearing and housing and {seat:g} to {ring:g} µm "
+        "between bearing and shaft",
+        f"leave an axis free within up to {play:g} µm",
+        f"{fits:.5f} degrees at the output, {100 * fits / backlash:.0f} % of the backlash of "
+        f"{backlash:.4f} degrees",
+        f"would count {apart:.5f} degrees of it, {math.sin(youn.ALPHA):.3f} times as much",
+    ]
+
+
 def about_meshes():
     low, high = ratios_of((0, 2)), ratios_of((1, 3))
     widths = [youn.WIDTH * youn.K_34 / rule(4.0, (0, 2), v, v)[1] for v in ("y", "Y")]

@@ -43,6 +43,7 @@ LIMITS: tuple[tuple[Path, int], ...] = (  # of a file, and the way that is easie
     (("stiffness", "frequency"), -1),
     (("stiffness", "windup"), 1),
     (("stiffness", "mesh_variation"), -1),
+    (("stiffness", "load_torque"), -1),
     (("space", "width"), 1),
     (("space", "height"), 1),
     (("space", "motor_diameter"), -1),
@@ -67,6 +68,7 @@ RANGES: tuple[tuple[Path, int], ...] = (
     (("train", "pinion_teeth", 1), 1),
     (("train", "wheel_teeth"), 1),
 )
+ASKED = ("train", "output_torque"), ("stiffness", "load_torque")
 ERROR, SHAFT, TOLERANCE = ("accuracy", "error"), ("shaft", "diameter"), ("train", "ratio_tolerance")
 SIDES = ("space", "width"), ("space", "height")
 DIAMETERS: tuple[Path, ...] = (
@@ -162,7 +164,7 @@ def moves(scene: Scene) -> Iterator[Move]:
             value = None if value.value <= shaft.value else value
         if not getattr(value, "number", value):
             continue
-        role = DUTY if path == ("train", "output_torque") else LIMIT
+        role = DUTY if path in ASKED else LIMIT
         far = FARTHEST_FACTOR if (path, way) in LIMITS else WIDEST_FACTOR
         yield Move(path, way, role, far=far, inherits=_given)
     if scene.train is not None and scene.train.ratio_tolerance == 0:

@@ -48,6 +48,11 @@ def assumptions(scene: Scene) -> list[str]:
             "The error at the output is lost motion between both flanks plus pitch error, by small "
             f"angles, in the worst case: every deviation is {sides}at its limit at the same time."
         )
+    if any(mesh.pinion_bearing_fit or mesh.wheel_bearing_fit for mesh in scene.mesh):
+        sentences.append(
+            "In a loose fit of its bearings an axis goes with the force of the teeth, along one "
+            "line of action or the other; the fits of an axis count in every mesh that it is in."
+        )
     if any(mesh.two_sided or mesh.minimum_backlash for mesh in scene.mesh):
         sentences.append(
             "Backlash: at the reference circle, -(sum of thickness allowances) + 2 tan(alpha) "
