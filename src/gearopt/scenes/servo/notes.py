@@ -51,7 +51,7 @@ def assumptions(scene: Scene) -> list[str]:
     if any(mesh.pinion_bearing_fit or mesh.wheel_bearing_fit for mesh in scene.mesh):
         sentences.append(
             "In a loose fit of its bearings an axis goes with the force of the teeth, along one "
-            "line of action or the other; the fits of an axis count in every mesh that it is in."
+            "line of action or the other."
         )
     if any(mesh.two_sided or mesh.minimum_backlash for mesh in scene.mesh):
         sentences.append(
@@ -120,9 +120,9 @@ def _of_train(scene: Scene) -> list[str]:
         )
         if scene.stiffness.mesh_variation is not None:
             sentences.append(
-                f"The stiffness of a mesh varies by {100 * float(scene.stiffness.mesh_variation):g}"
-                " % of its mean: stiffness, frequency and windup are those of the softest meshes, "
-                "both at once; what the windup by load_torque varies by is an error, of both "
+                "This is the mean of a mesh, which varies by "
+                f"{100 * float(scene.stiffness.mesh_variation):g} % of it: stiffness, frequency "
+                "and windup are those of both meshes at their softest; what the windup by load_torque varies by is an error, of both "
                 "meshes together, whatever their phases."
             )
         if scene.stiffness.line_stiffness is None:
