@@ -122,8 +122,8 @@ def _of_train(scene: Scene) -> list[str]:
             sentences.append(
                 "This is the mean of a mesh, which varies by "
                 f"{100 * float(scene.stiffness.mesh_variation):g} % of it: stiffness, frequency "
-                "and windup are those of both meshes at their softest; what the windup by load_torque varies by is an error, of both "
-                "meshes together, whatever their phases."
+                "and windup are those of both meshes at their softest; what the windup by "
+                "load_torque varies by is an error, of both together, whatever their phases."
             )
         if scene.stiffness.line_stiffness is None:
             sentences.append(
