@@ -19,12 +19,10 @@ from gearopt.formulations.servo.split.teeth_kernel import (
     first_stages,
     first_wheel,
     holds,
-    mesh,
     possible,
     promise,
     row,
     smallest,
-    soft,
     worth,
 )
 from gearopt.optimise.jit_kernel import entry, inner
@@ -38,6 +36,21 @@ PROMISE = 2 * duty_kernel.SECTION_STEPS  # steps of a promise of a duty
 UNKNOWN = -1  # of the parts that are open
 INTERVALS = np.int64(10_000)  # that may decide whether one train fits
 UNDECIDED = -1
+
+
+@inner
+def soft(teeth):
+    """1/Z of Buckingham's factor of a tooth, after Lewis."""
+    return 0.242 / (0.154 - 0.912 / teeth) + 7.25
+
+
+@inner
+def mesh(spring, m, pinion, wheel):
+    """Compliance of a mesh at its wheel [rad/(N mm)]."""
+    line = spring[0]
+    if line == 0.0:
+        line = spring[1] / (soft(pinion) + soft(wheel))
+    return 4.0 / (line * spring[2] * (m * wheel) ** 2)
 
 
 @inner

@@ -25,8 +25,8 @@ class Numbers(NamedTuple):
     unit (K,), output: what keeps gear 2 clear of the output shaft (`bodies.MinimumTeeth`). low,
     high: total ratio. bore; tip: largest reference diameter of gear 4 [mm]. load: minimum d m [mm2]
     of gear 4, by the teeth of its pinion, under the output torque; tooth: the same under 1 N mm.
-    disc_mass [kg/mm2] and disc_inertia [t/mm2]: per d^2 and per d^4. elastic: of
-    `Springs.varying`, 0 for none. duty: see `duty_numbers`.
+    disc_mass [kg/mm2] and disc_inertia [t/mm2]: per d^2 and per d^4. swing (Z,): of
+    `Springs.swings`, by teeth. duty: see `duty_numbers`.
     """
 
     least: Any
@@ -43,7 +43,7 @@ class Numbers(NamedTuple):
     output: int
     module: Array
     lost: Array
-    elastic: Array
+    swing: Array
     error: float
     load: Array
     tooth: Array
@@ -100,7 +100,7 @@ def numbers(train: ServoTrain, moved: bool = False) -> Numbers:
         **_teeth(train),
         module=np.array([float(m) for m in train.modules]),
         lost=np.array(train.lost_motion or (0.0, 0.0)),
-        elastic=np.zeros(4) if train.elastic is None else train.elastic.varying(width),
+        swing=_swings(train),
         error=float(train.error),
         load=train.output_torque * tooth,
         tooth=tooth,
@@ -114,6 +114,14 @@ def numbers(train: ServoTrain, moved: bool = False) -> Numbers:
         sector=float(train.sector),
         duty=duty_numbers(train.duty),
     )
+
+
+def _swings(train: ServoTrain) -> Array:
+    """Return the share of every gear in the error of meshes whose stiffness varies, by teeth."""
+    teeth = np.arange(max(train.wheel_teeth, train.pinion_teeth[1]) + 1, dtype=float)
+    if train.elastic is None:
+        return 0.0 * teeth
+    return train.elastic.swings(train.face_width, np.maximum(teeth, train.pinion_teeth[0]))
 
 
 def _floors(ratio: Fraction, most: int) -> Any:

@@ -99,11 +99,19 @@ class Springs:
         meshes = self.softest * line, self.softest * elastic, face_width
         return np.array([*meshes, twist, self.minimum or 0.0])
 
-    def varying(self, face_width: float) -> Array:
-        """Return `elastic` of `Numbers`: mean meshes, and the variation of a unit compliance."""
-        line, elastic = self.line_stiffness or 0.0, self.youngs_modulus
-        unit = windup_variation(self.load_torque or 0.0, 1.0, self.variation)
-        return np.array([line, elastic, face_width, unit])
+    def swings(self, face_width: float, teeth: Array) -> Array:
+        """Return what gears make the windup of a mesh vary by, times d^2 of its wheel [rad mm2].
+
+        Those of both gears add up, at the wheel under the load torque. face_width [mm].
+        """
+        line = self.line_stiffness
+        soft = (
+            1.0 / (self.youngs_modulus * tooth_factor(lewis_form_factor(teeth) / math.pi))
+            if line is None
+            else np.full(len(teeth), 0.5 / line)
+        )
+        unit = mesh_compliance(1.0, face_width, 1.0)
+        return np.asarray(windup_variation(self.load_torque or 0.0, unit * soft, self.variation))
 
     def output_stiffness(self, pairs: Pairs) -> Any:
         """Return the stiffness at the output [N mm/rad]."""

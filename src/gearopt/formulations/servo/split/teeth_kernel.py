@@ -18,28 +18,11 @@ CARRIED = 1.0 + 1e-11  # of the stress by a motion: what rounding hides along a 
 
 
 @inner
-def soft(teeth):
-    """1/Z of Buckingham's factor of a tooth, after Lewis."""
-    return 0.242 / (0.154 - 0.912 / teeth) + 7.25
-
-
-@inner
-def mesh(spring, m, pinion, wheel):
-    """Compliance of a mesh at its wheel [rad/(N mm)]."""
-    line = spring[0]
-    if line == 0.0:
-        line = spring[1] / (soft(pinion) + soft(wheel))
-    return 4.0 / (line * spring[2] * (m * wheel) ** 2)
-
-
-@inner
-def off(s, m1, z1, z2, m2, z3, z4):
-    """Error of a train [rad]; it falls with z4."""
-    lost = s.lost[0] * z3 / (m1 * z2 * z4) + s.lost[1] / (m2 * z4)
-    if s.elastic[3] == 0.0:
-        return lost
-    first = mesh(s.elastic, m1, z1, z2) * (z3 / z4) ** 2
-    return lost + s.elastic[3] * (mesh(s.elastic, m2, z3, z4) + first)
+def off(s, d2, z1, z2, z3, d4, z4):
+    """Error of a train [rad]: lost motion, and meshes whose stiffness varies; it falls with z4."""
+    first, last = z3 / (d2 * z4), 1.0 / d4
+    loaded = (s.swing[z1] + s.swing[z2]) * first**2 + (s.swing[z3] + s.swing[z4]) * last**2
+    return s.lost[0] * first + s.lost[1] * last + loaded
 
 
 @inner
@@ -51,7 +34,7 @@ def worth(s, goal, m1, z1, z2, m2, z3, z4):
     """
     d1, d2, d3, d4 = m1 * z1, m1 * z2, m2 * z3, m2 * z4
     if goal == 2:
-        return off(s, m1, z1, z2, m2, z3, z4)
+        return off(s, d2, z1, z2, z3, d4, z4)
     if goal == 1:
         return s.disc_mass * (d1**2 + d2**2 + d3**2 + s.sector * d4**2)
     middle = s.disc_inertia * (d2**4 + d3**4) + s.shaft_inertia
@@ -174,7 +157,7 @@ def sound(s, m1, z1, z2, m2, z3, z4):
 def holds(s, m1, z1, z2, m2, z3, z4):
     """Whether a train keeps what falls with z4: error, and stress under the output torque."""
     d2, d4 = m1 * z2, m2 * z4
-    if off(s, m1, z1, z2, m2, z3, z4) > s.error * ALLOWANCE:
+    if off(s, d2, z1, z2, z3, d4, z4) > s.error * ALLOWANCE:
         return False
     if s.load[z3] > d4 * m2 * ALLOWANCE:
         return False
