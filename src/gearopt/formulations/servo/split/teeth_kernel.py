@@ -11,13 +11,13 @@ from.
 
 import math
 
-from gearopt.optimise.jit_kernel import entry, inner
+from gearopt.optimise.jit_kernel import entry, inlined, inner
 
 ALLOWANCE = 1.0 + 1e-12  # of error and stress: many times their rounding
 CARRIED = 1.0 + 1e-11  # of the stress by a motion: what rounding hides along a row, too
 
 
-@inner
+@inlined
 def off(s, d2, z1, z2, z3, d4, z4):
     """Error of a train [rad]: lost motion, and meshes whose stiffness varies; it falls with z4."""
     first, last = z3 / (d2 * z4), 1.0 / d4
@@ -25,7 +25,7 @@ def off(s, d2, z1, z2, z3, d4, z4):
     return s.lost[0] * first + s.lost[1] * last + loaded
 
 
-@inner
+@inlined
 def worth(s, goal, m1, z1, z2, m2, z3, z4):
     """Objective of one train by `goal`: 1 mass of gears [kg], 2 error [rad], else at the motor.
 
@@ -153,7 +153,7 @@ def sound(s, m1, z1, z2, m2, z3, z4):
     return holds(s, m1, z1, z2, m2, z3, z4)
 
 
-@inner
+@inlined
 def holds(s, m1, z1, z2, m2, z3, z4):
     """Whether a train keeps what falls with z4: error, and stress under the output torque."""
     d2, d4 = m1 * z2, m2 * z4
