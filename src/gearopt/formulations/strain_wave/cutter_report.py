@@ -14,6 +14,8 @@ from gearopt.physics.strain_wave.vectors import Vector
 
 Columns = tuple[float, ...]
 EDGE = "points of the cutting edge"
+CUT, CUT_CLEARANCE = "flank as cut", "clearance of the teeth as cut"
+CONJUGATE, DEFORMED, MODIFIED = "conjugate", "deformed blank", "modified involute"  # generations
 POINTS = 51  # of the cutter's edge that are told
 USUAL = math.radians(20.0)  # pressure angle of usual tools
 
@@ -22,6 +24,8 @@ USUAL = math.radians(20.0)  # pressure angle of usual tools
 class Cutter:
     """The cutter that is asked for: a pinion-type cutter or a rack, and what may replace its edge.
 
+    generation: an edge that is conjugate to the flank, or a straight-sided hob, on the blank that a
+    wave generator deforms or on the round one, whose involute has a tip relief [mm].
     teeth Z_b, 0: a rack; pitch_radius P_f of the blank [mm], 0: m z_f/2. angle [rad]: of a straight
     tool that is there, beside the best one. least_radius [mm]: of an arc that replaces the edge, 0:
     any. replaced: whether a line and an arc that replace it are sought.
@@ -32,6 +36,30 @@ class Cutter:
     angle: float = USUAL
     least_radius: float = 0.0
     replaced: bool = True
+    generation: str = CONJUGATE
+    relief: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class ToothForm:
+    """Teeth of one form in mesh. deviation: how far they lie within conjugate ones at most.
+
+    play: of one side without load, normal to the flanks. at_ends: the part of the load
+    that teeth carry at an end of their flank [%]. shared_pressure: None where at most positions the
+    tooth of the largest load does.
+    """
+
+    teeth: str
+    deviation_mm: Annotated[float, Shown("largest deviation", unit="um")]
+    least_clearance_mm: Annotated[float, Shown("least clearance", unit="um")]
+    play_mm: Annotated[float, Shown("play", unit="um")]
+    near: Annotated[float, Shown("teeth within 1 µm")]
+    nearby: Annotated[float, Shown("teeth within 5 µm")]
+    carrying_teeth: Annotated[int, Shown("teeth that carry")]
+    effective_teeth: Annotated[float, Shown("equally loaded")]
+    windup_mrad: Annotated[float, Shown("windup, mrad")]
+    at_ends: Annotated[float, Shown("load at ends of flanks, %", form=".0f")]
+    shared_pressure_MPa: Annotated[float | None, Shown("contact pressure")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,8 +71,13 @@ class CutterDesign:
     the flank; not regular where it is not above 0: then nothing else is told. straight,
     arc: edges of least largest deviation, the arc of least_radius at least; given: an edge at the
     tool's angle.
+
+    Of a straight-sided hob x is from its reference line, reference_radius that line's distance from
+    the blank's axis; cut: the flank that it cuts, how far it lies within the conjugate one, and its
+    clearance over the wave; forms: conjugate teeth and those that are cut.
     """
 
+    generation: str = CONJUGATE
     teeth: int
     pitch_radius_mm: float
     cutter_radius_mm: float
@@ -61,6 +94,14 @@ class CutterDesign:
     least_radius_mm: float = 0.0
     given_deg: float = 0.0
     given_deviation_mm: float = 0.0
+    tip_relief_mm: float = 0.0
+    reference_radius_mm: float = 0.0
+    cut_height_mm: Annotated[Columns, Shown("height over the neutral curve", CUT)] = ()
+    cut_half_mm: Annotated[Columns, Shown("half thickness", CUT)] = ()
+    cut_within_mm: Annotated[Columns, Shown("within the conjugate flank", CUT, "um", ".4f")] = ()
+    cut_wave_deg: Annotated[Columns, Shown("on the wave", CUT_CLEARANCE, form=".4f")] = ()
+    cut_clearance_mm: Annotated[Columns, Shown("clearance", CUT_CLEARANCE, "um")] = ()
+    forms: tuple[ToothForm, ...] = ()
 
 
 def cutter_of(gearing: StrainWave, blank: Profile, asked: Cutter) -> CutterDesign:

@@ -240,8 +240,9 @@ def with_cutter(scene: Scene, ask: Ask, known: Result | None) -> Result:
     tool, extras = scene.tool(), _extras(ask)
     if tool is None:
         return _with(known, {})
-    flank = _flank(scene.demand(), known)
-    return _with(known, {"cutter": cutter_design(flank, tool, extras)}, extras.left_out)
+    demand = scene.demand()
+    cutter = cutter_design(demand.duty, _flank(demand, known), tool, extras)
+    return _with(known, {"cutter": cutter}, extras.left_out)
 
 
 def with_law_loads(scene: Scene, ask: Ask, known: Result | None) -> Result:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 
+from gearopt.formulations.strain_wave.cutter_report import CONJUGATE, USUAL
 from gearopt.formulations.strain_wave.demand import (
     FREE,
     LAND,
@@ -20,6 +21,13 @@ NOT_JUDGED = (
     "Not judged: fatigue of the rim, as [material] has no fatigue limits; those that are assumed "
     "are of steel."
 )
+STRAIGHT_HOB = (
+    "Jun and Oh name the straight-sided hob on the deformed blank, and the modified involute, "
+    "without an equation. Taken here: a hob of the gearing's module that moves on a straight line, "
+    "one pitch for each tooth that passes; teeth as thin as they must be to interfere nowhere; a "
+    "relief that grows as a parabola. The hob's tip, feed marks and the tooth's fillet are not "
+    "computed, nor what deforming and relaxing the rim does to the shape of a tooth."
+)
 
 
 def assumptions(scene: Scene) -> list[str]:
@@ -36,6 +44,8 @@ def assumptions(scene: Scene) -> list[str]:
             "A tooth that touches at two points is taken to carry at the one of higher contact "
             "pressure; ratcheting is computed with the pressure angle at the middle of the flank."
         )
+    if scene.cutter is not None and scene.cutter.generation != CONJUGATE:
+        model.append(STRAIGHT_HOB)
     limits = (
         f"Limits of every gearing: lands and root spaces of {LAND:g} modules, tip circle "
         f"{100.0 * (OUTSIDE_BASE - 1.0):.2g} % outside the base circle, {TIP_GAP:g} modules "
@@ -72,6 +82,9 @@ def _sizes(scene: Scene) -> Iterator[str]:
         yield f"a bottom clearance of {float(gears.clearance):g} modules"
     if scene.wave_generator.shape == "discs" and scene.wave_generator.wrap_angle is None:
         yield f"discs that carry over {math.degrees(scene.demand().wrap):g}° on each side"
+    cutter = scene.cutter
+    if cutter and cutter.generation != CONJUGATE and cutter.tool_angle is None:
+        yield f"a straight-sided hob of {math.degrees(USUAL):g}°"
     if not scene.involute and teeth.thickness is None:
         yield f"teeth {scene.law().thickness:.4g} mm thick at half their height, half the pitch"
     if teeth.law == DOUBLE_ARC:
@@ -179,6 +192,11 @@ def notes(made: WaveDesign) -> list[str]:
             "of the wave generator."
         )
         sentences += _without_play(made)
+    if made.cutter and made.cutter.generation != CONJUGATE:
+        sentences.append(
+            "Loads, clearances and limits are those of conjugate teeth; the teeth as a "
+            "straight-sided hob cuts them are compared with them beside the cutter."
+        )
     if made.left_out:
         sentences.append(f"Left out for lack of time: {_series(made.left_out)}.")
     return sentences

@@ -4,7 +4,7 @@ import math
 
 from pydantic import Field, model_validator
 
-from gearopt.formulations.strain_wave.cutter_report import USUAL, Cutter
+from gearopt.formulations.strain_wave.cutter_report import CONJUGATE, USUAL, Cutter
 from gearopt.formulations.strain_wave.demand import FREE, Demand, Duty
 from gearopt.formulations.strain_wave.design import INVOLUTE
 from gearopt.formulations.strain_wave.swept_report import HALF_LOCUS, Law
@@ -127,6 +127,9 @@ class Scene(ProblemFile):
             if not of_half_locus and getattr(self.gears, name) is None:
                 rule = f'is missing: gears are chosen with law = "{INVOLUTE}" alone'
                 raise refuse(rule, at=("gears", name), action="sample")
+        if self.cutter is not None and self.cutter.generation != CONJUGATE:
+            rule = f'needs law = "{INVOLUTE}", whose flank a straight edge comes near'
+            raise refuse(rule, CONJUGATE, ("cutter", "generation"))
         for name in ("tool_angle", "least_radius"):
             if self.cutter is not None and getattr(self.cutter, name) is not None:
                 rule = f'changes nothing: no simple edge is fitted for law = "{self.teeth.law}"'
@@ -287,6 +290,8 @@ class Scene(ProblemFile):
             _or(self.cutter.tool_angle, USUAL),
             _or(self.cutter.least_radius, 0.0),
             self.involute,
+            self.cutter.generation,
+            _or(self.cutter.tip_relief, 0.0),
         )
 
 

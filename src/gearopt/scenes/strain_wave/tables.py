@@ -5,6 +5,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
+from gearopt.formulations.strain_wave.cutter_report import CONJUGATE, DEFORMED, MODIFIED
 from gearopt.formulations.strain_wave.design import INVOLUTE
 from gearopt.formulations.strain_wave.swept_report import DOUBLE_ARC, HALF_LOCUS
 from gearopt.physics.strain_wave.gearing import WAVES
@@ -222,6 +223,12 @@ class WaveLimits(Table):
 class WaveCutter(Table):
     """The cutter of the flexspline."""
 
+    generation: Annotated[str, choice(CONJUGATE, DEFORMED, MODIFIED)] = Field(
+        CONJUGATE,
+        description="How the flexspline is cut: by an edge that is conjugate to its flank, by a "
+        "straight-sided hob on the blank that the wave generator deforms, or by one on the round "
+        "blank, as a modified involute",
+    )
     teeth: Annotated[int | None, whole(40, 4, 400)] = Field(
         None, description="Teeth of a pinion-type cutter; without them a rack, as of a hob"
     )
@@ -229,7 +236,14 @@ class WaveCutter(Table):
         None, description="Pitch diameter of the blank as it rolls; by default module times teeth"
     )
     tool_angle: Annotated[Quantity | None, quantity("angle", "20 deg", "40 deg")] = Field(
-        None, description="Angle of a straight tool to hold against the best; by default 20 deg"
+        None,
+        description="Angle of a straight-sided hob, or of a straight tool to hold against the best "
+        "edge; by default 20 deg",
+    )
+    tip_relief: Annotated[Quantity | None, quantity("length", "10 um", "0.1 mm")] = Field(
+        None,
+        description="Relief of a modified involute at its tip, which grows as a parabola from its "
+        "root; by default none",
     )
     least_radius: Annotated[Quantity | None, quantity("length", "500 mm", "100 m")] = Field(
         None, description="Minimum radius of an arc that replaces the edge; by default any"
@@ -242,3 +256,16 @@ class WaveCutter(Table):
     grid: Annotated[Quantity | None, quantity("length", "0.1 mm")] = Field(
         None, description="Grid of the drawing; by default 0.05 mm"
     )
+
+    @model_validator(mode="after")
+    def _of_the_generation(self) -> "WaveCutter":
+        idle = {
+            CONJUGATE: ("tip_relief",),
+            DEFORMED: ("teeth", "pitch_diameter", "least_radius", "tip_relief"),
+            MODIFIED: ("teeth", "pitch_diameter", "least_radius"),
+        }[self.generation]
+        for name in idle:
+            if getattr(self, name) is not None:
+                rule = f'changes nothing: generation = "{self.generation}" needs no {name}'
+                raise refuse(rule, at=(name,), action="remove")
+        return self

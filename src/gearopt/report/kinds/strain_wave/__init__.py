@@ -6,7 +6,7 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
-from gearopt.formulations.strain_wave.cutter_report import CutterDesign
+from gearopt.formulations.strain_wave.cutter_report import CONJUGATE, CutterDesign
 from gearopt.formulations.strain_wave.design import WaveDesign
 from gearopt.formulations.strain_wave.exchange import CUTTING
 from gearopt.formulations.strain_wave.shift import STEP_DEG
@@ -17,7 +17,7 @@ from gearopt.report.drawing.sheet import series
 from gearopt.report.headline import exceeded, of_limits
 from gearopt.report.kinds import Pages
 from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, OPENING, REQUEST
-from gearopt.report.kinds.strain_wave import tables
+from gearopt.report.kinds.strain_wave import hob, tables
 from gearopt.report.kinds.strain_wave.cutter import breadth, drawing, usual_scale
 from gearopt.report.kinds.strain_wave.motion import running
 from gearopt.report.measures import METRIC, Measures
@@ -111,7 +111,7 @@ def warns(result: Result, measures: Measures = METRIC) -> Sequence[str]:
             "pressures are not valid."
         )
     if design.cutter and not design.cutter.regular:
-        warnings.append(f"No such cutter: its edge would have a cusp. {_least(design.cutter)}")
+        warnings.append(_no_cutter(design.cutter, measures))
     return warnings
 
 
@@ -244,27 +244,46 @@ def cutter(result: Result, measures: Measures) -> Section | None:
     design = design_of(result)
     if design is None or (tool := design.cutter) is None:
         return None
-    words: tuple[str, ...] = (f"No such cutter: its edge would have a cusp. {_least(tool)}",)
     if not tool.regular:
-        return Section("Cutter of the flexspline", words=words, terminal=words)
-    words = (
-        f"{_tool(tool)} that rolls on a pitch radius of "
-        f"{amount(tool.pitch_radius_mm, 'mm', measures)} generates the flank {_generates(tool)}; "
-        f"its edge has no cusp. {_least(tool)}",
-    )
+        none = (_no_cutter(tool, measures),)
+        return Section("Cutter of the flexspline", words=none, terminal=none)
+    straight = tool.generation != CONJUGATE
+    words = hob.words(tool, measures) if straight else (_conjugate_cutter(tool, measures),)
     shown, pitch = result.report["cutter_drawing"], math.pi * design.module_mm
     grid = shown["grid_mm"]
     scale = shown["scale"] or usual_scale(tool, pitch, grid)
     edges = [tables.edges(tool, measures)] if tool.straight_deg else []
+    edges += [hob.forms(tool, measures)] if straight else []
     if (width := scale * breadth(tool, pitch, grid)) > WIDEST:
         wide = amount(width, "mm", measures)
         words = (*words, f"No drawing: at {scale:g}:1 it would be {wide} wide.")
     return Section(
         "Cutter of the flexspline",
         words=words,
-        drawings=[drawing(tool, pitch, scale, grid, measures)] if width <= WIDEST else [],
-        tables=[*edges, tables.edge_points(tool, measures)],
+        drawings=[
+            *([hob.mesh(design, tool, measures)] if straight else []),
+            *([drawing(tool, pitch, scale, grid, measures)] if width <= WIDEST else []),
+        ],
+        figures=hob.figures(design, tool, measures) if straight else [],
+        tables=[
+            *(*edges, tables.edge_points(tool, measures)),
+            *(hob.points(tool, measures) if straight else []),
+        ],
         terminal=(words[0], *edges),
+    )
+
+
+def _no_cutter(tool: CutterDesign, measures: Measures) -> str:
+    if tool.generation != CONJUGATE:
+        return hob.words(tool, measures)[0]
+    return f"No such cutter: its edge would have a cusp. {_least(tool)}"
+
+
+def _conjugate_cutter(tool: CutterDesign, measures: Measures) -> str:
+    return (
+        f"{_tool(tool)} that rolls on a pitch radius of "
+        f"{amount(tool.pitch_radius_mm, 'mm', measures)} generates the flank {_generates(tool)}; "
+        f"its edge has no cusp. {_least(tool)}"
     )
 
 
