@@ -14,6 +14,7 @@ from gearopt.formulations.strain_wave.cutter_report import (
 from gearopt.formulations.strain_wave.design import WaveDesign
 from gearopt.physics.strain_wave.neutral_curve import whole_curve
 from gearopt.physics.strain_wave.straight_hob import round_blank
+from gearopt.physics.strain_wave.vectors import Vector
 from gearopt.report.drawing.sheet import SHEET, Drawing, Sheet, Window, series
 from gearopt.report.kinds.strain_wave.motion import SERIES_OF_BODIES, drawn
 from gearopt.report.measures import Measures
@@ -21,8 +22,7 @@ from gearopt.report.plots import Figure, axis, layout, lines
 from gearopt.report.section import Table, columns, side_by_side
 from gearopt.report.words import amount, number
 
-TEETH = 3  # of the hob on either side of the major axis
-DEEP = 2.0  # modules below the teeth that a drawing shows
+TEETH = 2  # of the hob on either side of the major axis
 NEAR_DEG = 25.0  # of the wave on either side, of the plot of clearances
 HEADS = ["", "conjugate", "as cut"]
 NO_FLANK = (
@@ -100,33 +100,39 @@ def mesh(design: WaveDesign, tool: CutterDesign, measures: Measures) -> Drawing:
     """Draw the hob's teeth in the spaces of its blank, the major axis upright, to scale."""
     shape, pitch = drawn(design), math.pi * design.module_mm
     curve = shape.curve if tool.generation == DEFORMED else round_blank(shape.gearing)
-    x, y = np.array(tool.x_mm) + tool.reference_radius_mm, np.array(tool.y_mm)
-    low, top = float(x.min()), float(x.max()) + design.module_mm
-    wide = (TEETH + 0.5) * pitch
-    base = low - DEEP * design.module_mm
-    sheet = Sheet(Window(-wide, wide, base, top), (SHEET - 48.0) / (2.0 * wide))
-    numbers = np.arange(-TEETH - 1, TEETH + 2)
-    place, normal = whole_curve(curve, 2.0 * math.pi * numbers / design.flexspline_teeth)
+    out, half = np.array(tool.x_mm) + tool.reference_radius_mm, np.array(tool.y_mm)
     rim = 0.5 * design.rim_mm
-    half, height = np.array(tool.cut_half_mm), np.array(tool.cut_height_mm)
-    side = np.c_[np.r_[rim, height], np.r_[half[0], half]]
+    ring = 2.0 * math.pi * np.linspace(-TEETH - 0.5, TEETH + 0.5, 41) / design.flexspline_teeth
+    inner, outer = (_along(*whole_curve(curve, ring), level) for level in (-rim, rim))
+    top, wide = float(out.max()) + 0.5 * design.module_mm, (TEETH + 0.5) * pitch
+    window = Window(-wide, wide, float(inner[:, 1].min()), top)
+    sheet = Sheet(window, (SHEET - 48.0) / (2.0 * wide))
+    _shape(sheet, np.vstack([inner, outer[::-1]]), SERIES_OF_BODIES[0], "rim of the blank")
+    height, across = np.array(tool.cut_height_mm), np.array(tool.cut_half_mm)
+    side = np.c_[np.r_[rim, height], np.r_[across[0], across]]
     outline = np.vstack([side, side[::-1] * (1.0, -1.0)])
-    for k in range(len(numbers)):
-        cosine, sine = math.cos(normal[k]), math.sin(normal[k])
-        out = place.x[k] + outline[:, 0] * cosine - outline[:, 1] * sine
-        across = place.y[k] + outline[:, 0] * sine + outline[:, 1] * cosine
-        _shape(sheet, np.c_[-across, out], SERIES_OF_BODIES[0], "tooth of the blank, as cut")
-    for k in range(-TEETH - 1, TEETH + 2):
-        left = np.c_[y + k * pitch, x]
-        right = np.c_[(k + 1.0) * pitch - y, x]
-        body = [((k + 1.0) * pitch - y[-1], top), (y[-1] + k * pitch, top)]
-        _shape(sheet, np.vstack([left, body[::-1], right[::-1]]), 6, "tooth of the hob")
+    for k in range(-TEETH, TEETH + 1):
+        place, normal = whole_curve(curve, np.array([2.0 * math.pi * k / design.flexspline_teeth]))
+        tooth = _along(place, normal, outline[:, 0], outline[:, 1])
+        _shape(sheet, tooth, SERIES_OF_BODIES[0], "tooth of the blank, as cut")
+    beyond = half[-1] - math.tan(math.radians(tool.given_deg)) * (top - out[-1])
+    side = np.c_[np.r_[half, max(beyond, 0.0)], np.r_[out, top]]
+    for k in range(-TEETH, TEETH):
+        other = side[::-1] * (-1.0, 1.0) + ((k + 1) * pitch, 0.0)
+        _shape(sheet, np.vstack([side + (k * pitch, 0.0), other]), 6, "tooth of the hob")
     caption = (
         "The hob in its blank, the active part of its edge; it moves along the tangent of the "
         f"{'major axis' if tool.generation == DEFORMED else 'round blank'} by one pitch of "
         f"{amount(pitch, 'mm', measures)} for each tooth that passes."
     )
     return sheet.drawing("hob in its blank", caption)
+
+
+def _along(place: Vector, normal: Any, out: Any, across: Any = 0.0) -> Any:
+    """Points (n, 2) out and across from places on the neutral curve, upright."""
+    point = place + Vector(np.cos(normal), np.sin(normal)) * out
+    point = point + Vector(-np.sin(normal), np.cos(normal)) * across
+    return np.c_[-point.y, point.x]
 
 
 def _shape(sheet: Sheet, points: Any, colour: int, title: str) -> None:
