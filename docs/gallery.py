@@ -130,6 +130,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "strain_wave_base": "Teeth in contact, loads, stress against profile shift, cutter.",
         "strain_wave_from_duty": "80:1, 100 N m, 90 mm: all else chosen, free of interference.",
         "strain_wave_interferes": "Teeth that cut each other as they disengage; a cutter's cusp.",
+        "strain_wave_modified_involute": "Relieved involutes, cut by a straight-sided hob.",
         "strain_wave_discs": "Two discs as wave generator instead of cos 2 phi.",
         "strain_wave_320": "320:1 with an elastic rim.",
         "strain_wave_double_arc": "Double circular arcs: many teeth touch, and press harder.",

@@ -94,6 +94,7 @@ LONG = (
     "strain_wave_half_locus",
     "strain_wave_interferes",
     "strain_wave_discs",
+    "strain_wave_modified_involute",
     "least_vibration",
     "least_vibration_parting",
     "unstable_speed",

@@ -7,7 +7,9 @@ import numpy as np
 
 from gearopt.bench import curvature, wave_cutter
 from gearopt.formulations.strain_wave.cutter_fit import arc_edge, straight_edge
+from gearopt.formulations.strain_wave.cutter_report import DEFORMED, MODIFIED, Cutter
 from gearopt.formulations.strain_wave.demand import Duty, equal_pressure, shared_pressure
+from gearopt.formulations.strain_wave.hob_report import hob_design
 from gearopt.formulations.strain_wave.sharing import shared, teeth_of
 from gearopt.formulations.strain_wave.shift import largest_addendum, last_shift_of_one_pair
 from gearopt.physics.strain_wave.clearance import (
@@ -188,6 +190,41 @@ def fit_rows():
             f"{1e3 * arc.deviation:.1e}",
             f"{1e3 * fixed.deviation:.2f}",
         )
+
+
+HOBS = (  # case, tool angle in degrees, tip reliefs in um
+    ("base", 20.0, (0.0, 1.0)),
+    ("alpha 15, h_a 0.5", 15.0, (0.0, 8.0)),
+    ("alpha 28", 28.0, (0.0,)),
+    ("alpha 28", 20.0, (0.0,)),
+    ("320:1, m 0.2", 20.0, (0.0,)),
+)
+
+
+def hob_rows():
+    for case, angle, reliefs in HOBS:
+        conjugate = flank(CASES[case])
+        ways = [(DEFORMED, 0.0), *((MODIFIED, 1e-3 * um) for um in reliefs)]
+        for generation, relief in ways:
+            asked = Cutter(angle=np.radians(angle), generation=generation, relief=relief)
+            exact, cut = hob_design(DUTY, conjugate, asked).forms
+            if generation == DEFORMED and (case, angle) != ("alpha 28", 20.0):
+                yield hob_row(case, "", "conjugate", exact)
+            name = generation + (f", relief {1e3 * relief:g}" if relief else "")
+            yield hob_row(case, f"{angle:g}", name, cut)
+
+
+def hob_row(case, angle, name, form):
+    lengths = form.deviation_mm, form.least_clearance_mm, form.play_mm
+    pressure = form.shared_pressure_MPa
+    return row(
+        *(case, angle, name),
+        *(f"{1e3 * v:.{3 if abs(v) < 1e-5 else 2}f}" for v in lengths),
+        *(f"{n:.1f}" for n in (form.near, form.nearby, form.effective_teeth)),
+        f"{form.windup_mrad:.4f}",
+        f"{form.at_ends:.0f}",
+        "" if pressure is None else f"{pressure:.1f}",
+    )
 
 
 def construction_rows():

@@ -23,7 +23,7 @@ CHEAP = (
 )
 LONG = (
     *(jun_oh.addendum_rows, jun_oh.one_pair_rows, jun_oh.fit_rows),
-    *(jun_oh.ratio_rows, jun_oh.shift_rows),
+    *(jun_oh.ratio_rows, jun_oh.shift_rows, jun_oh.hob_rows),
 )
 TIMED = (
     jun_oh.construction_rows,

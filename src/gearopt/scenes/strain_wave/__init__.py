@@ -306,6 +306,9 @@ def with_limits(scene: Scene, ask: Ask, known: Result | None) -> Result:
     demand = scene.demand()
     flank = _flank(demand, known)
     limits = _interference_used(known) | used(demand, flank)
+    forms = (known.design.get("cutter") or {}).get("forms") or ()
+    if forms and forms[-1]["least_clearance_mm"] >= CUTTING:  # the teeth that are cut are judged
+        limits = {k: v for k, v in limits.items() if k != "interference" or v <= 1.0}
     return _limited(replace(known, parts=()), limits)
 
 

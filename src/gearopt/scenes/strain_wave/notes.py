@@ -178,7 +178,7 @@ def notes(made: WaveDesign) -> list[str]:
     sentences = [_windup(made)]
     if made.least_clearance_mm < CUTTING:
         sentences.append(
-            f"Interference: teeth overlap by {-1e3 * made.least_clearance_mm:.3g} µm, at "
+            f"Interference: {_teeth(made)} overlap by {-1e3 * made.least_clearance_mm:.3g} µm, at "
             f"{made.least_clearance_at_deg:.4g} degrees from the major axis."
         )
     elif made.law != INVOLUTE:
@@ -192,14 +192,19 @@ def notes(made: WaveDesign) -> list[str]:
             "of the wave generator."
         )
         sentences += _without_play(made)
-    if made.cutter and made.cutter.generation != CONJUGATE:
+    if made.cutter and made.cutter.forms:
         sentences.append(
-            "Loads, clearances and limits are those of conjugate teeth; the teeth as a "
-            "straight-sided hob cuts them are compared with them beside the cutter."
+            "Loads and clearances are those of conjugate teeth. The teeth as the hob cuts them, "
+            "which are compared with them beside the cutter, interfere nowhere."
         )
     if made.left_out:
         sentences.append(f"Left out for lack of time: {_series(made.left_out)}.")
     return sentences
+
+
+def _teeth(made: WaveDesign) -> str:
+    """Return which teeth clearances are of, in words."""
+    return "conjugate teeth" if made.cutter and made.cutter.forms else "teeth"
 
 
 def _windup(made: WaveDesign) -> str:

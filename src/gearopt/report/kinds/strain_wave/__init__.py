@@ -105,10 +105,14 @@ def warns(result: Result, measures: Measures = METRIC) -> Sequence[str]:
     warnings = []
     if design.least_clearance_mm < CUTTING:
         overlap = micrometres(-design.least_clearance_mm, measures)
+        cut = bool(design.cutter and design.cutter.forms)
+        teeth, but = (
+            ("conjugate teeth", "; teeth as cut clear each other") if cut else ("teeth", "")
+        )
         warnings.append(
-            f"Interference: teeth overlap by {overlap}, at "
+            f"Interference: {teeth} overlap by {overlap}, at "
             f"{design.least_clearance_at_deg:.3g}° from the major axis: loads and contact "
-            "pressures are not valid."
+            f"pressures are not valid{but}."
         )
     if design.cutter and not design.cutter.regular:
         warnings.append(_no_cutter(design.cutter, measures))
