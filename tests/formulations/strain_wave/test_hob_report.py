@@ -10,14 +10,13 @@ import pytest
 from gearopt.formulations.strain_wave.cutter_report import DEFORMED, MODIFIED, Cutter
 from gearopt.formulations.strain_wave.demand import Duty
 from gearopt.formulations.strain_wave.hob_report import (
+    _form,
     cut_flank,
     hob_design,
-    nearest_contacts,
-    play,
+    touch_at_ends,
 )
 from gearopt.physics.strain_wave.clearance import interference, poses
 from gearopt.physics.strain_wave.conjugate import flank
-from gearopt.physics.strain_wave.cutter import Profile
 from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.neutral_curve import arc_angle, radii
 from gearopt.physics.strain_wave.rim import Cup
@@ -39,6 +38,12 @@ def design(generation, gearing=BASE, tool=20.0, relief=0.0):
     return hob_design(DUTY, flank(gearing), asked)
 
 
+def within(generation):
+    """How far the flank as cut lies within the conjugate one, at all its points."""
+    cut, at = cut_flank(base(), Cutter(generation=generation))[0], base().contacts
+    return (at.point.y - cut.contacts.point.y) * at.direction.x
+
+
 def gaps_by_hand(made, points):
     """Least clearance of points at poses of 0.02 degrees, with kinematics in complex numbers."""
     gear, curve, p = made.gearing, made.curve, poses(0.02, 60.0)
@@ -53,46 +58,40 @@ def gaps_by_hand(made, points):
 
 @pytest.mark.parametrize("generation", [DEFORMED, MODIFIED])
 def test_a_hob_is_fed_in_until_teeth_just_touch(generation):
-    cut = cut_flank(base(), Cutter(generation=generation))
-    assert abs(interference(cut.flank).gap) < 1e-9
-    assert gaps_by_hand(base(), cut.tooth.points) == pytest.approx(0.0, abs=2e-6)
-    assert cut.deviation.min() > -1e-9
+    cut = cut_flank(base(), Cutter(generation=generation))[0]
+    assert abs(interference(cut).gap) < 1e-9
+    assert gaps_by_hand(base(), cut.contacts.point) == pytest.approx(0.0, abs=2e-6)
+    assert within(generation).min() > -1e-9
 
 
 def test_a_straight_hob_on_the_deformed_blank_is_within_3_nm_of_the_conjugate_flank():
     """On the round blank it misses by 1 um: 400 times as far. The shapes, whatever the infeed."""
-    deformed, modified = (
-        cut_flank(base(), Cutter(generation=g)).deviation for g in (DEFORMED, MODIFIED)
-    )
+    deformed, modified = (within(g) for g in (DEFORMED, MODIFIED))
     assert np.ptp(deformed) < 3e-6 and 300.0 < np.ptp(modified) / np.ptp(deformed) < 500.0
 
 
 def test_the_involute_misses_by_what_a_fixed_edge_of_20_degrees_does():
     """Two ways to 0.5 um on either side: the best offset of the page's straight edge of a rack."""
-    off = cut_flank(base(), Cutter(generation=MODIFIED)).deviation
-    assert 1e3 * 0.5 * np.ptp(off) == pytest.approx(0.51, abs=5e-3)
+    assert 1e3 * 0.5 * np.ptp(within(MODIFIED)) == pytest.approx(0.51, abs=5e-3)
 
 
-def test_thinner_teeth_have_the_play_that_they_lost():
-    """A parallel flank: every clearance grows by 2 um."""
+def test_play_is_what_parallel_flanks_lost():
+    """Conjugate points 2 um inside: each clearance grows by that, and the windup by it over r_b."""
     at, thin = base().contacts, 2e-3
     points = at.point - at.direction.left * thin
-    thinner = replace(base(), contacts=replace(at, point=points))
-    assert play(base()) == 0.0
-    assert play(thinner) == pytest.approx(thin, abs=1e-6)
+    form = _form(DUTY, replace(base(), contacts=replace(at, point=points)), thin)
+    exact = _form(DUTY, base(), 0.0)
+    assert exact.play_mm == 0.0 and form.play_mm == pytest.approx(thin, abs=1e-6)
+    assert form.least_clearance_mm == pytest.approx(thin, abs=1e-6)
+    grown = 1e-3 * (form.windup_mrad - exact.windup_mrad)
+    assert grown == pytest.approx(thin / BASE.base_radius, rel=2e-3)
+    assert form.effective_teeth == pytest.approx(exact.effective_teeth, rel=1e-3)
 
 
-def test_contacts_of_the_conjugate_flank_are_those_of_the_closed_form():
-    """1/R within 0.1 % on the arc of contact, all within the flanks; beyond it at ends."""
-    at = base().contacts
-    exact = Profile(at.point, at.direction, at.curvatures[1])
-    inside = np.linspace(at.motion.arc[1], at.motion.arc[-2], 23)
-    found, at_end = nearest_contacts(base(), exact, inside)
-    assert not at_end.any()
-    closed = np.interp(inside, at.motion.arc, at.gap_curvature)
-    assert found == pytest.approx(closed, rel=1e-3)
-    beyond = np.array([at.motion.arc[0] - 0.01, at.motion.arc[-1] + 0.01])
-    assert nearest_contacts(base(), exact, beyond)[1].all()
+def test_conjugate_teeth_touch_within_their_flanks_on_the_arc_of_contact_alone():
+    arc = base().contacts.motion.arc
+    assert not touch_at_ends(base(), np.linspace(arc[3], arc[-4], 23)).any()
+    assert touch_at_ends(base(), [arc[0] - 0.01, arc[-1] + 0.01]).all()
 
 
 def test_conjugate_teeth_carry_as_the_design_says():
@@ -117,7 +116,7 @@ def test_a_relief_clears_the_interference_of_15_degrees_with_little_play():
     assert plain[1].least_clearance_mm >= -1e-8 and relieved[1].least_clearance_mm >= -1e-8
     assert 1e3 * plain[1].play_mm == pytest.approx(6.4, abs=0.05)
     assert 1e3 * relieved[1].play_mm < 0.1
-    assert relieved[1].shared_pressure_MPa > 4.0 * plain[0].shared_pressure_MPa
+    assert relieved[1].shared_pressure_MPa > 4.0 * design(DEFORMED).forms[0].shared_pressure_MPa
 
 
 def test_a_hob_that_cuts_no_flank_is_none():
@@ -127,6 +126,14 @@ def test_a_hob_that_cuts_no_flank_is_none():
     assert low.complete and root < 40.0 * math.cos(math.radians(5.0))
     found = hob_design(DUTY, low, replace(asked, generation=MODIFIED))
     assert not found.regular and found.forms == ()
+
+
+def test_a_hob_has_the_pressure_angle_where_none_is_given():
+    found = design(MODIFIED, LOW, 0.0, 8e-3)
+    assert (
+        found.given_deg == pytest.approx(15.0)
+        and found.forms == design(MODIFIED, LOW, 15.0, 8e-3).forms
+    )
 
 
 def test_points_of_the_edge_lie_on_the_hobs_straight_side():

@@ -24,11 +24,11 @@ USUAL = math.radians(20.0)  # pressure angle of usual tools
 class Cutter:
     """The cutter that is asked for: a pinion-type cutter or a rack, and what may replace its edge.
 
-    generation: an edge that is conjugate to the flank, or a straight-sided hob, on the blank that a
-    wave generator deforms or on the round one, whose involute has a tip relief [mm].
     teeth Z_b, 0: a rack; pitch_radius P_f of the blank [mm], 0: m z_f/2. angle [rad]: of a straight
-    tool that is there, beside the best one. least_radius [mm]: of an arc that replaces the edge, 0:
-    any. replaced: whether a line and an arc that replace it are sought.
+    tool that is there, beside the best one, or of a straight-sided hob, 0: the pressure angle.
+    least_radius [mm]: of an arc that replaces the edge, 0: any. replaced: whether a line and an arc
+    that replace it are sought. generation: by an edge that is conjugate, or by a straight-sided hob
+    on the deformed or on the round blank, whose involute has a tip relief [mm].
     """
 
     teeth: int = 0
@@ -44,12 +44,11 @@ class Cutter:
 class ToothForm:
     """Teeth of one form in mesh. deviation: how far they lie within conjugate ones at most.
 
-    play: of one side without load, normal to the flanks. at_ends: the part of the load
-    that teeth carry at an end of their flank [%]. shared_pressure: None where at most positions the
-    tooth of the largest load does.
+    play: of one side without load, normal to the flanks. at_ends: the part of the load that teeth
+    carry at an end of their flank [%]. shared_pressure: None where the tooth of the largest load
+    mostly does.
     """
 
-    teeth: str
     deviation_mm: Annotated[float, Shown("largest deviation", unit="um")]
     least_clearance_mm: Annotated[float, Shown("least clearance", unit="um")]
     play_mm: Annotated[float, Shown("play", unit="um")]
@@ -70,20 +69,17 @@ class CutterDesign:
     across, half the space for the blank's tooth. speed: least speed along the edge over that along
     the flank; not regular where it is not above 0: then nothing else is told. straight,
     arc: edges of least largest deviation, the arc of least_radius at least; given: an edge at the
-    tool's angle.
-
-    Of a straight-sided hob x is from its reference line, reference_radius that line's distance from
-    the blank's axis; cut: the flank that it cuts, how far it lies within the conjugate one, and its
-    clearance over the wave; forms: conjugate teeth and those that are cut.
+    tool's angle. Of a straight-sided hob x is from its reference line, which is reference_radius
+    from the blank's axis; cut: the flank as it is cut; forms: conjugate teeth and those as cut.
     """
 
     generation: str = CONJUGATE
-    teeth: int
+    teeth: int = 0
     pitch_radius_mm: float
-    cutter_radius_mm: float
+    cutter_radius_mm: float = 0.0
     regular: bool
     least_speed: float
-    least_teeth: int | None
+    least_teeth: int | None = None
     x_mm: Annotated[Columns, Shown("x", EDGE)] = ()
     y_mm: Annotated[Columns, Shown("y", EDGE)] = ()
     round_trip_mm: float = 0.0

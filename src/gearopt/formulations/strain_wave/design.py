@@ -10,12 +10,7 @@ from typing import Annotated, Any, TypeVar
 
 import numpy as np
 
-from gearopt.formulations.strain_wave.cutter_report import (
-    CONJUGATE,
-    Cutter,
-    CutterDesign,
-    cutter_of,
-)
+from gearopt.formulations.strain_wave.cutter_report import Cutter, CutterDesign, cutter_of
 from gearopt.formulations.strain_wave.demand import (
     Demand,
     Duty,
@@ -28,7 +23,6 @@ from gearopt.formulations.strain_wave.demand import (
     shared_pressure,
 )
 from gearopt.formulations.strain_wave.exchange import CUTTING, STEP_DEG, RangeEnd, stretched
-from gearopt.formulations.strain_wave.hob_report import hob_design
 from gearopt.formulations.strain_wave.sharing import REACH, Loads
 from gearopt.formulations.strain_wave.shift import (
     largest_addendum,
@@ -281,10 +275,8 @@ def other_deflections(extras: Extras, at: Callable[[float], Deflected]) -> tuple
     return extras.of("other deflections", meeting, none, SOUGHT)
 
 
-def cutter_design(duty: Duty, flank: Flank, asked: Cutter, extras: Extras) -> CutterDesign:
+def cutter_design(flank: Flank, asked: Cutter, extras: Extras) -> CutterDesign:
     """The cutter, while there is time with a line and an arc that replace its edge."""
-    if asked.generation != CONJUGATE:
-        return hob_design(duty, flank, asked)
     name = "straight and circular edges of the cutter"
     asked = extras.of(name, lambda: asked, replace(asked, replaced=False), REPLACED)
     return cutter_of(flank.gearing, blank_profile(flank), asked)

@@ -22,15 +22,13 @@ ON_HEIGHT = 1e-10  # mm that is left of them, where a height is cut at all
 
 @dataclass(frozen=True)
 class Cut:
-    """A flank in the tooth's frame as it is cut, and the hob's edge that cuts it.
+    """A flank in the tooth's frame (height over the neutral curve, half thickness) as it is cut.
 
-    tooth: height over the neutral curve, half thickness [mm]. angles [rad]: polar ones of the tooth
-    as the hob touches these points. edge: where on the hob, out from the blank's axis and across
-    from the middle of the hob's space [mm]. Points that no place of the hob cuts are NaN.
+    edge: where on the hob, out from the blank's axis and across from the middle of the hob's space
+    [mm]. Points that no place of the hob cuts are NaN.
     """
 
     tooth: Profile
-    angles: Any
     edge: Vector
 
     @property
@@ -62,19 +60,18 @@ def hobbed(
         at = at + np.clip((heights - points.x) / rate, -0.02, 0.02)
     edge, points, along, radius, _ = _envelope(gearing, curve, angle, offset, at)
     known = np.where(np.abs(points.x - heights) < ON_HEIGHT, 1.0, np.nan)
-    return Cut(Profile(points * known, along, -1.0 / radius), at, edge)
+    return Cut(Profile(points * known, along, -1.0 / radius), edge)
 
 
 def _envelope(
     gearing: StrainWave, curve: NeutralCurve, angle: float, offset: float, at: Any
 ) -> tuple[Vector, Vector, Vector, Any, Any]:
-    """Envelope of the edge at polar angles p [rad]: place on the hob, point, tangent, radius, rate.
+    """Envelope at polar angles p [rad]: place on the hob, point, tangent, radius, height's rate.
 
-    Normal n = (sin a, cos a), place q and normal angle Psi of the blank's tooth, the hob's travel
-    v phi with v = m z_f/2. In the tooth's frame the edge has the normal angle theta = pi/2 - a -
-    Psi and the support function s = d + n.(i v phi - q), and its envelope is s n + s_theta i n with
-    the radius of curvature s + s_theta_theta (convex above 0); dPsi/dphi = R_m kappa. rate: of the
-    height by p. Source: envelopes of lines by their support function.
+    With n = (sin a, cos a), place q and normal angle Psi of the tooth and the hob's travel v phi,
+    v = m z_f/2, the edge has in the tooth's frame the normal angle theta = pi/2 - a - Psi and the
+    support function s = d + n.(i v phi - q): its envelope is s n + s_theta i n with the radius
+    s + s_theta_theta (convex above 0); dPsi/dphi = R_m kappa.
     """
     travel, size = gearing.blank_radius, curve.radius
     normal = Vector(math.sin(angle), math.cos(angle))

@@ -7,6 +7,7 @@ from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations.strain_wave import sampled
+from gearopt.formulations.strain_wave.cutter_report import CONJUGATE
 from gearopt.formulations.strain_wave.demand import FREE, PRESSURE, VOLUME, Demand
 from gearopt.formulations.strain_wave.design import (
     Extras,
@@ -28,6 +29,7 @@ from gearopt.formulations.strain_wave.exchange import (
     exchange,
     slopes_of,
 )
+from gearopt.formulations.strain_wave.hob_report import hob_design
 from gearopt.formulations.strain_wave.impossible import told
 from gearopt.formulations.strain_wave.sampled import SHARE
 from gearopt.formulations.strain_wave.swept_report import (
@@ -241,8 +243,10 @@ def with_cutter(scene: Scene, ask: Ask, known: Result | None) -> Result:
     if tool is None:
         return _with(known, {})
     demand = scene.demand()
-    cutter = cutter_design(demand.duty, _flank(demand, known), tool, extras)
-    return _with(known, {"cutter": cutter}, extras.left_out)
+    flank = _flank(demand, known)
+    if tool.generation == CONJUGATE:
+        return _with(known, {"cutter": cutter_design(flank, tool, extras)}, extras.left_out)
+    return _with(known, {"cutter": hob_design(demand.duty, flank, tool)})
 
 
 def with_law_loads(scene: Scene, ask: Ask, known: Result | None) -> Result:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 
-from gearopt.formulations.strain_wave.cutter_report import CONJUGATE, USUAL
+from gearopt.formulations.strain_wave.cutter_report import CONJUGATE
 from gearopt.formulations.strain_wave.demand import (
     FREE,
     LAND,
@@ -22,11 +22,9 @@ NOT_JUDGED = (
     "are of steel."
 )
 STRAIGHT_HOB = (
-    "Jun and Oh name the straight-sided hob on the deformed blank, and the modified involute, "
-    "without an equation. Taken here: a hob of the gearing's module that moves on a straight line, "
-    "one pitch for each tooth that passes; teeth as thin as they must be to interfere nowhere; a "
-    "relief that grows as a parabola. The hob's tip, feed marks and the tooth's fillet are not "
-    "computed, nor what deforming and relaxing the rim does to the shape of a tooth."
+    "Jun and Oh name the hob on the deformed blank and the modified involute without an equation. "
+    "Taken here: a straight-sided hob of the gearing's module, one pitch a tooth, fed in until "
+    "teeth touch. Not computed: its tip, fillets, and what bending the rim does to a tooth's shape."
 )
 
 
@@ -82,9 +80,6 @@ def _sizes(scene: Scene) -> Iterator[str]:
         yield f"a bottom clearance of {float(gears.clearance):g} modules"
     if scene.wave_generator.shape == "discs" and scene.wave_generator.wrap_angle is None:
         yield f"discs that carry over {math.degrees(scene.demand().wrap):g}° on each side"
-    cutter = scene.cutter
-    if cutter and cutter.generation != CONJUGATE and cutter.tool_angle is None:
-        yield f"a straight-sided hob of {math.degrees(USUAL):g}°"
     if not scene.involute and teeth.thickness is None:
         yield f"teeth {scene.law().thickness:.4g} mm thick at half their height, half the pitch"
     if teeth.law == DOUBLE_ARC:
@@ -178,7 +173,7 @@ def notes(made: WaveDesign) -> list[str]:
     sentences = [_windup(made)]
     if made.least_clearance_mm < CUTTING:
         sentences.append(
-            f"Interference: {_teeth(made)} overlap by {-1e3 * made.least_clearance_mm:.3g} µm, at "
+            f"Interference: teeth overlap by {-1e3 * made.least_clearance_mm:.3g} µm, at "
             f"{made.least_clearance_at_deg:.4g} degrees from the major axis."
         )
     elif made.law != INVOLUTE:
@@ -192,19 +187,14 @@ def notes(made: WaveDesign) -> list[str]:
             "of the wave generator."
         )
         sentences += _without_play(made)
-    if made.cutter and made.cutter.forms:
+    if made.cutter and made.cutter.forms and made.cutter.forms[-1].least_clearance_mm >= CUTTING:
         sentences.append(
-            "Loads and clearances are those of conjugate teeth. The teeth as the hob cuts them, "
-            "which are compared with them beside the cutter, interfere nowhere."
+            "This is of conjugate teeth. The teeth as the hob cuts them interfere nowhere; beside "
+            "the cutter they are compared with conjugate ones."
         )
     if made.left_out:
         sentences.append(f"Left out for lack of time: {_series(made.left_out)}.")
     return sentences
-
-
-def _teeth(made: WaveDesign) -> str:
-    """Return which teeth clearances are of, in words."""
-    return "conjugate teeth" if made.cutter and made.cutter.forms else "teeth"
 
 
 def _windup(made: WaveDesign) -> str:

@@ -287,7 +287,7 @@ class Scene(ProblemFile):
         return Cutter(
             self.cutter.teeth or 0,
             0.0 if pitch is None else 0.5 * pitch.value,
-            _or(self.cutter.tool_angle, USUAL),
+            _or(self.cutter.tool_angle, USUAL if self.cutter.generation == CONJUGATE else 0.0),
             _or(self.cutter.least_radius, 0.0),
             self.involute,
             self.cutter.generation,

@@ -237,8 +237,8 @@ class WaveCutter(Table):
     )
     tool_angle: Annotated[Quantity | None, quantity("angle", "20 deg", "40 deg")] = Field(
         None,
-        description="Angle of a straight-sided hob, or of a straight tool to hold against the best "
-        "edge; by default 20 deg",
+        description="Angle of a straight-sided hob, by default the pressure angle; or of a "
+        "straight tool to hold against the best edge, by default 20 deg",
     )
     tip_relief: Annotated[Quantity | None, quantity("length", "10 um", "0.1 mm")] = Field(
         None,
@@ -259,12 +259,9 @@ class WaveCutter(Table):
 
     @model_validator(mode="after")
     def _of_the_generation(self) -> "WaveCutter":
-        idle = {
-            CONJUGATE: ("tip_relief",),
-            DEFORMED: ("teeth", "pitch_diameter", "least_radius", "tip_relief"),
-            MODIFIED: ("teeth", "pitch_diameter", "least_radius"),
-        }[self.generation]
-        for name in idle:
+        rolls = "teeth", "pitch_diameter", "least_radius"
+        idle = {CONJUGATE: ("tip_relief",), DEFORMED: (*rolls, "tip_relief"), MODIFIED: rolls}
+        for name in idle[self.generation]:
             if getattr(self, name) is not None:
                 rule = f'changes nothing: generation = "{self.generation}" needs no {name}'
                 raise refuse(rule, at=(name,), action="remove")

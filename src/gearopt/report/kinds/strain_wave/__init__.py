@@ -105,17 +105,16 @@ def warns(result: Result, measures: Measures = METRIC) -> Sequence[str]:
     warnings = []
     if design.least_clearance_mm < CUTTING:
         overlap = micrometres(-design.least_clearance_mm, measures)
-        cut = bool(design.cutter and design.cutter.forms)
-        teeth, but = (
-            ("conjugate teeth", "; teeth as cut clear each other") if cut else ("teeth", "")
-        )
+        teeth = "teeth"
+        if design.cutter and design.cutter.forms:
+            teeth = "conjugate teeth, but not those that the hob cuts,"
         warnings.append(
             f"Interference: {teeth} overlap by {overlap}, at "
             f"{design.least_clearance_at_deg:.3g}° from the major axis: loads and contact "
-            f"pressures are not valid{but}."
+            "pressures are not valid."
         )
     if design.cutter and not design.cutter.regular:
-        warnings.append(_no_cutter(design.cutter, measures))
+        warnings.append(_cutter_words(design.cutter, measures)[0])
     return warnings
 
 
@@ -159,16 +158,22 @@ def _line(x: Sequence[float], y: Any, name: str, colour: int) -> dict[str, Any]:
 def _clearances(gearing: WaveDesign, measures: Measures) -> Figure:
     """Plot the clearance of a tooth near the arc of contact."""
     factor, unit = measures.of(1.0, "um"), measures.unit("um")
-    rows = [
-        (a, factor * c)
-        for a, c in zip(gearing.wave_angle_deg, gearing.wave_clearance_mm, strict=True)
-        if -NEAR_DEG <= a <= max(NEAR_DEG, gearing.touching_deg[-1][1] + BEYOND_DEG)
-    ]
-    x, y = zip(*rows, strict=True)
+    each = [("clearance", gearing.wave_angle_deg, gearing.wave_clearance_mm, 1)]
+    if (tool := gearing.cutter) and tool.forms:
+        each.append(("as the hob cuts them", tool.cut_wave_deg, tool.cut_clearance_mm, 4))
+    most = max(NEAR_DEG, gearing.touching_deg[-1][1] + BEYOND_DEG)
+    curves = []
+    for name, angles, gaps, colour in each:
+        near = [
+            (a, factor * c) for a, c in zip(angles, gaps, strict=True) if -NEAR_DEG <= a <= most
+        ]
+        x, y = zip(*near, strict=True)
+        curves.append(_line(x, y, name, colour))
     plot = layout(axis(ANGLE), axis(f"clearance [{unit}]"), hovermode="x")
     plot["shapes"] = [band(*ends) for ends in gearing.touching_deg]
+    plot["margin"] |= {"t": 34} if len(each) > 1 else {}
     caption = "Least clearance of a tooth by its place on the wave; shaded: conjugate flanks touch."
-    return Figure([_line(x, y, "clearance", 1)], plot, caption, follows=RUNS)
+    return Figure(curves, plot, caption, follows=RUNS)
 
 
 def _loads(gearing: WaveDesign, measures: Measures) -> Figure:
@@ -248,46 +253,39 @@ def cutter(result: Result, measures: Measures) -> Section | None:
     design = design_of(result)
     if design is None or (tool := design.cutter) is None:
         return None
+    words = _cutter_words(tool, measures)
     if not tool.regular:
-        none = (_no_cutter(tool, measures),)
-        return Section("Cutter of the flexspline", words=none, terminal=none)
-    straight = tool.generation != CONJUGATE
-    words = hob.words(tool, measures) if straight else (_conjugate_cutter(tool, measures),)
+        return Section("Cutter of the flexspline", words=words, terminal=words)
     shown, pitch = result.report["cutter_drawing"], math.pi * design.module_mm
     grid = shown["grid_mm"]
     scale = shown["scale"] or usual_scale(tool, pitch, grid)
     edges = [tables.edges(tool, measures)] if tool.straight_deg else []
-    edges += [hob.forms(tool, measures)] if straight else []
+    if tool.forms:
+        edges = hob.tables(tool, measures)
+    drawings = [hob.mesh(design, tool, measures)] if tool.forms else []
     if (width := scale * breadth(tool, pitch, grid)) > WIDEST:
         wide = amount(width, "mm", measures)
         words = (*words, f"No drawing: at {scale:g}:1 it would be {wide} wide.")
+    else:
+        drawings.append(drawing(tool, pitch, scale, grid, measures))
     return Section(
         "Cutter of the flexspline",
         words=words,
-        drawings=[
-            *([hob.mesh(design, tool, measures)] if straight else []),
-            *([drawing(tool, pitch, scale, grid, measures)] if width <= WIDEST else []),
-        ],
-        figures=hob.figures(design, tool, measures) if straight else [],
-        tables=[
-            *(*edges, tables.edge_points(tool, measures)),
-            *(hob.points(tool, measures) if straight else []),
-        ],
-        terminal=(words[0], *edges),
+        drawings=drawings,
+        tables=[*edges, tables.edge_points(tool, measures)],
+        terminal=(words[0], *edges[:1]),
     )
 
 
-def _no_cutter(tool: CutterDesign, measures: Measures) -> str:
+def _cutter_words(tool: CutterDesign, measures: Measures) -> tuple[str, ...]:
     if tool.generation != CONJUGATE:
-        return hob.words(tool, measures)[0]
-    return f"No such cutter: its edge would have a cusp. {_least(tool)}"
-
-
-def _conjugate_cutter(tool: CutterDesign, measures: Measures) -> str:
+        return hob.words(tool, measures)
+    if not tool.regular:
+        return (f"No such cutter: its edge would have a cusp. {_least(tool)}",)
     return (
         f"{_tool(tool)} that rolls on a pitch radius of "
         f"{amount(tool.pitch_radius_mm, 'mm', measures)} generates the flank {_generates(tool)}; "
-        f"its edge has no cusp. {_least(tool)}"
+        f"its edge has no cusp. {_least(tool)}",
     )
 
 
