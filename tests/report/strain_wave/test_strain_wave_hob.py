@@ -62,7 +62,7 @@ def test_only_conjugate_teeth_are_warned_of_and_both_are_plotted(result):
     assert "conjugate teeth, but not those that the hob cuts, overlap by 6.71 µm" in words
     assert "interference" not in result.limits and result.feasible
     names = [trace["name"] for trace in moving(result, METRIC).figures[0].data]
-    assert names == ["clearance", "as the hob cuts them"]
+    assert names == ["clearance", "clearance of the teeth as cut"]
 
 
 def test_a_hob_that_cuts_no_flank_is_told(result):

@@ -16,8 +16,7 @@ from gearopt.physics.strain_wave.neutral_curve import NeutralCurve, arc_angle, c
 from gearopt.physics.strain_wave.vectors import Vector, polar
 
 SEARCH = np.radians(np.linspace(-30.0, 30.0, 241))  # polar angles at which heights are cut
-NEWTON = 8  # steps from the nearest of them to a height
-ON_HEIGHT = 1e-10  # mm that is left of them, where a height is cut at all
+NEWTON, ON_HEIGHT = 8, 1e-10  # steps from the nearest of them, and mm left where a height is cut
 
 
 @dataclass(frozen=True)

@@ -160,7 +160,7 @@ def _clearances(gearing: WaveDesign, measures: Measures) -> Figure:
     factor, unit = measures.of(1.0, "um"), measures.unit("um")
     each = [("clearance", gearing.wave_angle_deg, gearing.wave_clearance_mm, 1)]
     if (tool := gearing.cutter) and tool.forms:
-        each.append(("as the hob cuts them", tool.cut_wave_deg, tool.cut_clearance_mm, 4))
+        each.append(("clearance of the teeth as cut", tool.cut_wave_deg, tool.cut_clearance_mm, 4))
     most = max(NEAR_DEG, gearing.touching_deg[-1][1] + BEYOND_DEG)
     curves = []
     for name, angles, gaps, colour in each:

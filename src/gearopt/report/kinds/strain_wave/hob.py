@@ -55,8 +55,8 @@ def words(tool: CutterDesign, measures: Measures) -> tuple[str, ...]:
 
 def tables(tool: CutterDesign, measures: Measures) -> list[Table]:
     """Conjugate teeth beside those that are cut; points and clearances of the latter."""
-    rows = side_by_side(tool.forms, measures)
-    forms = Table("teeth as cut", ["", "conjugate", "as cut"], rows, CAPTION)
+    heads, rows = ["", "conjugate", "as cut"], side_by_side(tool.forms, measures)
+    forms = Table("teeth as cut", heads, rows, CAPTION)
     return [forms, *(columns(tool, measures, n, folded=True) for n in (CUT, CUT_CLEARANCE))]
 
 
