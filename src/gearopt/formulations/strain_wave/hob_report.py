@@ -18,7 +18,6 @@ from gearopt.formulations.strain_wave.sharing import teeth_turned
 from gearopt.physics.strain_wave import clearance, straight_hob
 from gearopt.physics.strain_wave.conjugate import Flank
 from gearopt.physics.strain_wave.neutral_curve import angle_of_arc, radii
-from gearopt.physics.strain_wave.straight_hob import Cut
 from gearopt.physics.strain_wave.tooth_motion import pose_of
 from gearopt.physics.strain_wave.vectors import Vector
 
@@ -28,15 +27,14 @@ POSITIONS = np.linspace(-0.5, 0.5, 32, endpoint=False)  # of the wave generator,
 TOLD = np.radians(np.linspace(-60.0, 60.0, 241))  # of the wave, where clearances are listed
 
 
-def cut_flank(conjugate: Flank, asked: Cutter) -> tuple[Flank, Cut, float] | None:
+def cut_flank(conjugate: Flank, asked: Cutter) -> tuple[Flank, straight_hob.Cut, float] | None:
     """Return the flank that a hob cuts in place of a conjugate one, and the offset of the hob [mm].
 
     Fed in until teeth touch at one pose of the wave and interfere at none. Contacts are those of
     the conjugate flank with points and 1/R as cut. None where no flank is cut from root to tip.
     """
     gearing, at = conjugate.gearing, conjugate.contacts
-    deformed = asked.generation == DEFORMED
-    curve = conjugate.curve if deformed else straight_hob.round_blank(gearing)
+    curve = conjugate.curve if asked.generation == DEFORMED else straight_hob.round_blank(gearing)
     middle = at.point[len(at.point.x) // 2]
     place = Vector(float(radii(curve, 0.0)[0]) + middle.x, middle.y)
     offset = float(Vector(math.sin(asked.angle), math.cos(asked.angle)).dot(place))
@@ -46,8 +44,7 @@ def cut_flank(conjugate: Flank, asked: Cutter) -> tuple[Flank, Cut, float] | Non
         if not cut.regular or tooth.points.y[-1] <= 0.0:
             return None
         relative = at.curvatures[0] - tooth.curvatures
-        contacts = replace(at, point=tooth.points, gap_curvature=relative)
-        flank = replace(conjugate, contacts=contacts)
+        flank = replace(conjugate, contacts=replace(at, point=tooth.points, gap_curvature=relative))
         gap = clearance.interference(flank).gap
         if abs(gap) < TOUCHING:
             break
@@ -121,14 +118,12 @@ def _form(duty: Duty, flank: Flank, deviation: float) -> ToothForm:
 def touch_at_ends(flank: Flank, arcs: Any) -> Any:
     """Return whether teeth at angles phi [rad] come nearest at an end of a flank.
 
-    By the least distance of the flank's points to the involute. Ends: those of the tooth, and the
-    tip of the circular spline.
+    By points of the flank; ends are those of the tooth and the tip of the circular spline.
     """
     gearing, points = flank.gearing, flank.contacts.point
     at = pose_of(gearing, flank.curve, angle_of_arc(flank.curve, np.asarray(arcs, float)))
-    gap, radius = clearance.involute_gap(
-        gearing, at.placed(Vector(points.x[:, None], points.y[:, None]))
-    )
+    place = at.placed(Vector(points.x[:, None], points.y[:, None]))
+    gap, radius = clearance.involute_gap(gearing, place)
     reached = radius >= gearing.tip_radius
     nearest = np.where(reached, gap, math.inf).argmin(axis=0)
     return (nearest == reached.argmax(axis=0)) | (nearest == len(points.x) - 1)

@@ -114,5 +114,5 @@ def relieved(tooth: Profile, relief: float) -> Profile:
     bend = tooth.curvatures * (1.0 + slope * slope) ** 1.5 - 2.0 * most / height**2
     slope = slope - 2.0 * most * share / height
     steep = np.sqrt(1.0 + slope * slope)
-    points = Vector(x, tooth.points.y - most * share * share)
-    return Profile(points, Vector(1.0 / steep, slope / steep), bend / steep**3)
+    points, along = Vector(x, tooth.points.y - most * share**2), Vector(1.0 / steep, slope / steep)
+    return Profile(points, along, bend / steep**3)

@@ -225,9 +225,8 @@ class WaveCutter(Table):
 
     generation: Annotated[str, choice(CONJUGATE, DEFORMED, MODIFIED)] = Field(
         CONJUGATE,
-        description="How the flexspline is cut: by an edge that is conjugate to its flank, by a "
-        "straight-sided hob on the blank that the wave generator deforms, or by one on the round "
-        "blank, as a modified involute",
+        description="How the flexspline is cut: by a conjugate edge, by a straight-sided hob on "
+        "the deformed blank, or by one on the round blank, as a modified involute",
     )
     teeth: Annotated[int | None, whole(40, 4, 400)] = Field(
         None, description="Teeth of a pinion-type cutter; without them a rack, as of a hob"
