@@ -6,6 +6,7 @@ from dataclasses import asdict, astuple, field, replace
 from fractions import Fraction
 from typing import Annotated, Any
 
+from gearopt.formulations.drive.drawing_data import DrawingData
 from gearopt.formulations.drive.layout.layout_design import LayoutDesign
 from gearopt.formulations.drive.rating import DriveRating
 from gearopt.formulations.drive.train import STEEL_DENSITY, Train
@@ -207,7 +208,7 @@ class DriveDesign:
     """Stages and totals of a drive; where its gears are, once laid out.
 
     costs: of every gear, where cost is an objective. contact, relief: of one pair whose file asks
-    for them.
+    for them. drawing: data of the drawings of its gears, where it is asked for.
     """
 
     stages: tuple[StageDesign, ...]
@@ -224,6 +225,7 @@ class DriveDesign:
     contact: PairContact | None = None
     relief: PairRelief | None = None
     flank: FlankContact | None = None
+    drawing: DrawingData | None = None
 
 
 def drive_design(data: Mapping[str, Any]) -> DriveDesign:

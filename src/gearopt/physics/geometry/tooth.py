@@ -102,6 +102,31 @@ def ball_contact_diameter(gear: Gear, ball_diameter: Any) -> Any:
     return signed(np.hypot(base, base * tangent), gear.teeth)
 
 
+def over_pins(gear: Gear, pin_diameter: Any) -> Any:
+    """Dimension M_dR [mm] over two pins [mm] in opposite spaces, of a ring between them.
+
+    As over balls; pins lie along the helix of helical teeth, so that M = d_K + D_M of odd z, too.
+    Source: ISO 21771:2007; a printed report (KISSsoft, 95 teeth of 10 degrees).
+    """
+    if not gear.helix_angle:
+        return over_balls(gear, pin_diameter)
+    centres = gear.base_diameter / np.cos(involute_angle(_ball_value(gear, pin_diameter)))
+    return signed(centres + pin_diameter, gear.teeth)
+
+
+def chord(gear: Gear) -> tuple[Any, Any]:
+    """Normal chordal thickness and its height [mm] below the tip, at the reference circle.
+
+    d_n sin(s_n/d_n) and (d_a - d)/2 + d_n (1 - cos(s_n/d_n))/2, d_n = d/cos(beta)^2 that of the
+    curvature along s_n; of a ring the height is less by the last term. Sources: DIN 3960; metric
+    gear handbook, table 10-1 (z 12, m 10: 17.8256 and 13.6657); printed reports of helical gears.
+    """
+    d, thickness = gear.reference_diameter, normal_thickness(gear, gear.reference_diameter)
+    across = d / np.cos(gear.helix_angle) ** 2
+    height = 0.5 * (gear.tip_diameter - d) + 0.5 * across * (1.0 - np.cos(thickness / across))
+    return across * np.sin(thickness / across), height
+
+
 def _ball_value(gear: Gear, ball_diameter: Any) -> Any:
     angle, teeth = gear.rack.pressure_angle, gear.teeth
     filled = ball_diameter / (teeth * gear.normal_module * np.cos(angle))

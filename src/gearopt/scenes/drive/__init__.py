@@ -47,6 +47,7 @@ def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
     if open_types(scene):
         return (Step(of_best_types),)
     last: tuple[Step[Scene], ...] = (Step(with_assumptions, always=True), Step(rated, always=True))
+    last += (Step(drawn),) if scene.drawing is not None else ()
     if scene.layout is None:
         return *sizing.steps(scene, ask), *processes.steps(scene, ask), *last
     from gearopt.scenes.drive import layout
@@ -90,6 +91,13 @@ def rated(scene: Scene, ask: Ask, known: Result | None) -> Result:
     result = with_rating(scene, known)
     check_safe(scene, result)
     return rated_afterwards(scene, result)
+
+
+def drawn(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The answer with the data of its gears' drawings: `drawing.with_drawing`."""
+    from gearopt.scenes.drive.drawing import with_drawing
+
+    return with_drawing(scene, ask, known)
 
 
 def idle(scene: Scene, method: str | None) -> dict[str, str]:

@@ -45,6 +45,7 @@ from gearopt.scenes.drive.rating.options import of_stage, of_stages, required
 from gearopt.scenes.drive.shifts import balanced, check_range, check_shift
 from gearopt.scenes.drive.stage_types import by_type, check_types
 from gearopt.scenes.drive.tables.blanks import blank, check_blanks
+from gearopt.scenes.drive.tables.drawing import DrawingTable
 from gearopt.scenes.drive.tables.drive import (
     Gears,
     Limits,
@@ -127,6 +128,7 @@ class Scene(ProblemFile):
     teeth: Teeth | None = None
     shift: ShiftTable | None = None
     objective: Objective = Field(default_factory=Objective)
+    drawing: DrawingTable | None = None
     layout: Layout | None = None
     place: tuple[PlaceTable, ...] = Field((), description="One table per place")
     keep_out: tuple[KeepOutTable, ...] = Field((), description="One table per keep-out")

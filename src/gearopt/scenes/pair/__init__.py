@@ -14,6 +14,7 @@ from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
 from gearopt.scenes import drive
+from gearopt.scenes.drive.drawing import with_drawing
 from gearopt.scenes.drive.explain import answers as of_drive
 from gearopt.scenes.drive.rating import rated
 from gearopt.scenes.drive.scene import Scene as Drive
@@ -44,7 +45,7 @@ SPUR_FRONT = (
 
 
 def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
-    """Gears, given or sized, with their rating; their contact; their relief.
+    """Gears, given or sized, with their rating; their contact; their relief; their drawings' data.
 
     With a table [relief] that is what the answer is about, and a sized pair is its part "gears".
     """
@@ -62,7 +63,8 @@ def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
     if scene.given and without_relief:
         without_method(ask, NOTHING)
     relief: tuple[Step[Scene], ...] = () if without_relief else (Step(with_relief),)
-    return (*gears, Step(with_contact), *relief)
+    drawn = (Step(with_drawing, _as_drive),) if scene.drawing else ()
+    return (*gears, Step(with_contact), *relief, *drawn)
 
 
 def _as_drive(scene: Scene) -> Drive:

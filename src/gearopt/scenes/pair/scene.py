@@ -12,6 +12,7 @@ from gearopt.scenes.drive.rating.gears import given_pairs
 from gearopt.scenes.drive.rating.materials import MaterialTable
 from gearopt.scenes.drive.scene import DriveDuty
 from gearopt.scenes.drive.scene import Scene as Drive
+from gearopt.scenes.drive.tables.drawing import DrawingTable
 from gearopt.scenes.drive.tables.drive import Gears, Limits, Objective, StageTable, Teeth
 from gearopt.scenes.drive.tables.rating import LoadTable, RatingTable
 from gearopt.scenes.pair.flank_tables import FEWEST, SLICES, FlankTable
@@ -59,6 +60,7 @@ class Scene(ProblemFile):
     sharing: SharingTable = Field(default_factory=SharingTable)
     flank: FlankTable | None = None
     relief: ReliefTable | None = None
+    drawing: DrawingTable | None = None
 
     @property
     def drive(self) -> Drive:

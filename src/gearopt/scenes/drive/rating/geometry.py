@@ -26,12 +26,11 @@ def tooth_geometry(stage: int, pair: GearPair, member: int, pinion_hand: str) ->
     """Return the geometry of the pinion (0) or the wheel (1) of a stage."""
     gear, path = pair.gears[member], contact_path(pair)
     ends = [specific_sliding(path, pair.ratio, at)[member] for at in (path.start, path.end)]
-    hand = pinion_hand if member == 0 else OTHER[pinion_hand]
     whole = abs(gear.teeth - round(gear.teeth)) < 1e-9
     return ToothGeometry(
         stage=stage,
         member=MEMBERS[member],
-        hand=hand if gear.helix_angle else "spur",
+        hand=hand_of(gear, member, pinion_hand),
         teeth=round(gear.teeth) if whole else gear.teeth,
         profile_shift=float(gear.profile_shift),
         generating_shift=float(gear.generating_shift),
@@ -50,25 +49,42 @@ def tooth_geometry(stage: int, pair: GearPair, member: int, pinion_hand: str) ->
     )
 
 
+def hand_of(gear: Gear, member: int, pinion_hand: str) -> str:
+    """Hand of the helix of the pinion (0) or the wheel (1); a ring has that of its pinion."""
+    if not gear.helix_angle:
+        return "spur"
+    return pinion_hand if member == 0 or gear.teeth < 0 else OTHER[pinion_hand]
+
+
 def _finite(value: float) -> float | None:
     """Return a number; None where the mate's tip passes the end of the involute."""
     return float(value) if math.isfinite(value) else None
 
 
 def _measured(gear: Gear) -> dict[str, Any]:
-    """Return span and dimension over balls, where they touch the flanks.
-
-    Both ends of the span of helical teeth lie within the face width; balls stand out of the tips.
-    """
-    teeth = span_teeth(gear)
-    low, high = float(form_diameter(gear)), float(gear.active_tip_diameter)
+    """Return span and dimension over balls, where they touch the flanks."""
     dimensions: dict[str, Any] = {}
-    width = float(span(gear, teeth))
-    helical = width * abs(math.sin(base_helix_angle(gear)))  # along the axis
-    if low <= float(span_diameter(gear, teeth)) <= high and helical < gear.width:
-        dimensions |= {"span_teeth": teeth, "span_mm": width}
-    ball = BALL * gear.normal_module
-    over = float(over_balls(gear, ball))
-    if low <= float(ball_contact_diameter(gear, ball)) <= high < over:
+    if (teeth := spanned_teeth(gear)) is not None:
+        dimensions |= {"span_teeth": teeth, "span_mm": float(span(gear, teeth))}
+    if touches(gear, ball := BALL * gear.normal_module):
+        over = float(over_balls(gear, ball))
         dimensions |= {"ball_diameter_mm": ball, "over_balls_mm": over}
     return dimensions
+
+
+def spanned_teeth(gear: Gear) -> int | None:
+    """Teeth whose span touches the flanks, of helical teeth within the face width; else None."""
+    teeth = span_teeth(gear)
+    helical = float(span(gear, teeth)) * abs(math.sin(base_helix_angle(gear)))  # along the axis
+    return teeth if helical < gear.width and _on_flank(gear, span_diameter(gear, teeth)) else None
+
+
+def touches(gear: Gear, ball: float) -> bool:
+    """Whether a ball touches the flanks of a tooth space and stands out of the tips."""
+    out = float(gear.active_tip_diameter) < float(over_balls(gear, ball))
+    return out and _on_flank(gear, ball_contact_diameter(gear, ball))
+
+
+def _on_flank(gear: Gear, diameter: Any) -> bool:
+    """Whether a diameter lies on the involute, up to the chamfer of the tip."""
+    return float(form_diameter(gear)) <= float(diameter) <= float(gear.active_tip_diameter)

@@ -16,6 +16,7 @@ from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.geometry.flaws import Flaw
 from gearopt.physics.loads import torque
 from gearopt.physics.shaft_forces import hands
+from gearopt.scenes.drive.drawing import with_drawing
 from gearopt.scenes.drive.driving import driven, drivers
 from gearopt.scenes.drive.idlers import idlers
 from gearopt.scenes.drive.notes import masses
@@ -79,7 +80,8 @@ def rate(scene: Scene, ask: Ask) -> Result:
             f"the gears are not all given, which a rating needs: write {', '.join(missing)}; or "
             "gearopt solve FILE, which sizes them and rates what it finds"
         )
-    return carried_out((Step(with_given_rating), Step(with_given_gears)), scene, ask)
+    drawn: tuple[Step[Scene], ...] = (Step(with_drawing),) if scene.drawing is not None else ()
+    return carried_out((Step(with_given_rating), Step(with_given_gears), *drawn), scene, ask)
 
 
 def _check_rated(scene: Scene) -> None:
@@ -95,9 +97,10 @@ def rate_design(scene: Scene, ask: Ask, design: Mapping[str, Any]) -> Result:
         found = replace(drive_design(design), rating=None)
     except ValueError as why:
         raise SolveError(f"the design is no drive: {why}") from None
-    scene, pairs, materials = by_mesh(driven(scene.held(len(found.stages)), found), found)
-    rated = _rated(scene, ask, pairs, materials)
-    return _with_gears(scene, rated, pairs, found, _bodies(scene, pairs, materials))
+    meshed, pairs, materials = by_mesh(driven(scene.held(len(found.stages)), found), found)
+    rated = _rated(meshed, ask, pairs, materials)
+    result = _with_gears(meshed, rated, pairs, found, _bodies(meshed, pairs, materials))
+    return result if scene.drawing is None else with_drawing(scene, ask, result)
 
 
 def _bodies(scene: Scene, pairs: tuple[GearPair, ...], materials: Materials) -> list[Blanks]:

@@ -1,0 +1,272 @@
+"""Data of the drawings of gears: measures with allowances, tolerances, backlash, by [drawing]."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+from gearopt.errors import SolveError
+from gearopt.formulations.drive.design import DriveDesign, drive_design
+from gearopt.formulations.drive.drawing_data import DrawingData, GearData, MeshData
+from gearopt.formulations.drive.rating import MeshName
+from gearopt.optimise.result import Result
+from gearopt.optimise.typed import untyped
+from gearopt.physics.flank_tolerances import flank_tolerances
+from gearopt.physics.gears import MEMBERS, Gear, GearPair, signed
+from gearopt.physics.geometry.fillet import form_diameter
+from gearopt.physics.geometry.tooth import (
+    ball_contact_diameter,
+    chord,
+    circumferential_backlash,
+    normal_backlash,
+    normal_thickness,
+    over_balls,
+    over_pins,
+    span,
+)
+from gearopt.physics.iso6336.accuracy import beyond
+from gearopt.physics.shaft_forces import hands
+from gearopt.scenes.drive.driving import driven, drivers
+from gearopt.scenes.drive.rating import iso_material
+from gearopt.scenes.drive.rating.by_mesh import by_mesh, mesh_names
+from gearopt.scenes.drive.rating.gears import gear_tables
+from gearopt.scenes.drive.rating.geometry import BALL, hand_of, spanned_teeth, touches
+from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.drawing import DrawingTable
+from gearopt.scenes.drive.tables.rating import GearTable
+from gearopt.scenes.reading.ask import Ask
+
+USUAL_GRADE, USUAL_EDITION = 6, "1995"  # where neither the table nor a rating says
+OF_2013 = "tolerances of ISO 1328-1:2013 (no printed example was met)"
+BEYOND = "tolerances of {gear}: its {sizes} is beyond the ranges of ISO 1328-1"
+Ends = tuple[Gear, ...]  # of a gear at the upper and at the lower allowance
+
+
+def with_drawing(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The answer with the data of the drawing of every gear, or why there is none."""
+    assert known is not None and scene.drawing is not None
+    design = drive_design(known.design)
+    told, key = [_assumed(scene)], "assumptions"
+    try:
+        design = replace(design, drawing=drawing_data(scene, design))
+    except (SolveError, ValueError) as reason:
+        told, key = [f"There is no drawing data: {reason}."], "notes"
+    report = known.report | {key: [*known.report.get(key, []), *told]}
+    return replace(known, design=untyped(design), report=report)
+
+
+def drawing_data(scene: Scene, design: DriveDesign) -> DrawingData:
+    """Data of the gears of a design; SolveError or ValueError where a table has none."""
+    asked = scene.drawing
+    assert asked is not None
+    held = driven(scene.held(len(design.stages)), design)
+    meshed, pairs, materials = by_mesh(held, design)
+    names = mesh_names(meshed) or tuple(
+        MeshName(stage=k, title=f"stage {k}") for k in range(1, len(pairs) + 1)
+    )
+    turned = hands(
+        [own.pinion_hand for own in meshed.stage] or [None] * len(pairs), drivers(meshed)
+    )
+    several = len(design.stages) > 1
+    gears, meshes, unverified = list[GearData](), list[MeshData](), list[str]()
+    for k, (pair, name) in enumerate(zip(pairs, names, strict=True)):
+        _check_whole(pair, name)
+        own = meshed.stage_tables[k]
+        tables = gear_tables(own, meshed.gears, meshed.material, k, materials[k])
+        ends = [
+            tuple(replace(gear, thickness_allowance=off) for off in asked.thickness(gear))
+            for gear in pair.gears
+        ]
+        meshes.append(_mesh(pair, name, ends, asked))
+        for member, gear in enumerate(pair.gears):
+            called = f"{name.gears[member]} {name.stage}" if several else name.gears[member]
+            if member == 0 and (own.idler or name.pinion != name.gears[0]):
+                continue  # it is the wheel of the mesh before
+            grade, edition = _accuracy(scene, tables[member], member)
+            data = _gear(gear, ends[member], asked, grade, edition)
+            gears.append(
+                data(
+                    stage=name.stage,
+                    gear=called,
+                    mate=f"z {abs(pair.gears[1 - member].teeth):g}",
+                    hand=hand_of(gear, member, turned[k]),
+                    material=_material(design, k + 1, MEMBERS[member], tables[member]),
+                    **_relief(scene, design, MEMBERS[member]),
+                )
+            )
+            unverified += _unverified(called, pair, member, grade, edition)
+    return DrawingData(
+        gears=tuple(gears), meshes=tuple(meshes), unverified=tuple(dict.fromkeys(unverified))
+    )
+
+
+def _check_whole(pair: GearPair, name: MeshName) -> None:
+    """Raise SolveError for teeth that are no whole number."""
+    if any(not float(gear.teeth).is_integer() for gear in pair.gears):
+        raise SolveError(f"the gears of stage {name.stage} have no whole numbers of teeth")
+
+
+def _accuracy(scene: Scene, table: GearTable, member: int) -> tuple[int, str]:
+    """Grade and edition of ISO 1328-1 of a gear."""
+    asked, rated = scene.drawing, scene.rating
+    assert asked is not None
+    iso = rated.iso6336 if rated is not None and rated.by_iso6336 else None
+    edition = asked.tolerances or (iso.tolerances if iso else USUAL_EDITION)
+    if asked.accuracy_grade is not None:
+        return asked.accuracy_grade, edition
+    if table.accuracy_grade is not None:
+        return table.accuracy_grade, edition
+    return (iso.accuracy_grade[member] if iso and iso.accuracy_grade else USUAL_GRADE), edition
+
+
+def _gear(gear: Gear, ends: Ends, asked: DrawingTable, grade: int, edition: str) -> Any:
+    """The data of a gear, to be completed by names."""
+    rack, size = gear.rack, {}
+    for name, value in (
+        ("reference", gear.reference_diameter),
+        ("base", gear.base_diameter),
+        ("tip", gear.tip_diameter),
+        ("form", form_diameter(ends[0])),
+        ("root", gear.root_diameter),
+        ("upper_root", _as_cut(ends[0]).root_diameter),
+        ("lower_root", _as_cut(ends[1]).root_diameter),
+    ):
+        size[f"{name}_diameter_mm"] = abs(float(value))
+    bare = replace(gear, thickness_allowance=0.0)
+    wide, height = map(float, chord(bare))
+    amounts = flank_tolerances(gear, grade, edition).items()
+    own = "own A_sne, tolerance " * bool(gear.thickness_allowance)
+    chamfered = abs(float(gear.active_tip_diameter)) if rack.tip_chamfer else None
+    tool = f"cutter z {gear.cutter.teeth:g}" if gear.cutter else f"{rack.dedendum:g}"
+    tool = tool if gear.cutter else f"{tool}/{rack.tip_radius:g}"
+    known = dict(
+        teeth=abs(round(float(gear.teeth))),
+        normal_module_mm=float(gear.normal_module),
+        pressure_angle_deg=math.degrees(rack.pressure_angle),
+        helix_angle_deg=math.degrees(abs(gear.helix_angle)),
+        profile_shift=float(gear.profile_shift),
+        upper_generating_shift=float(ends[0].generating_shift),
+        lower_generating_shift=float(ends[1].generating_shift),
+        face_width_mm=float(gear.width),
+        tool=tool,
+        tip_form_diameter_mm=chamfered,
+        tooth_thickness_mm=float(normal_thickness(bare, gear.reference_diameter)),
+        allowances=own + asked.fit,
+        upper_allowance_mm=float(ends[0].thickness_allowance),
+        lower_allowance_mm=float(ends[1].thickness_allowance),
+        chord_mm=wide,
+        chord_height_mm=height,
+        tolerances=f"ISO 1328-1:{edition}, {grade}",
+        **(size | _measures(bare, ends, asked)),
+        **{f"{name}_mm": value for name, value in amounts},
+    )
+    return lambda **names: GearData(**known, **names)
+
+
+def _as_cut(gear: Gear) -> Gear:
+    """A gear whose nominal shift is the one that its tool has: its root is the one that is cut."""
+    return replace(gear, profile_shift=gear.generating_shift, thickness_allowance=0.0)
+
+
+def _measures(bare: Gear, ends: Ends, asked: DrawingTable) -> dict[str, Any]:
+    """Span, balls and pins of a gear, where they touch its flanks."""
+    known: dict[str, Any] = {}
+    gears = {"": bare, "upper_": ends[0], "lower_": ends[1]}
+    if (teeth := spanned_teeth(bare)) is not None:
+        known["span_teeth"] = teeth
+        known |= {f"{end}span_mm": float(span(gear, teeth)) for end, gear in gears.items()}
+    if (ball := _ball(bare, asked)) is None:
+        return known
+    known["ball_diameter_mm"] = ball
+    known |= {f"{end}over_balls_mm": float(over_balls(gear, ball)) for end, gear in gears.items()}
+    if bare.helix_angle and bare.teeth % 2:
+        known |= {f"{end}over_pins_mm": float(over_pins(gears[end], ball)) for end in [*gears][1:]}
+    return known
+
+
+def _ball(gear: Gear, asked: DrawingTable) -> float | None:
+    """Diameter [mm] of the ball that measures a gear; None where none touches its flanks.
+
+    Of several the smallest that touches at d + 2 x m_n or nearer the tip: five balls of printed
+    reports (z 18, 36, 24, 95 and a ring of 93) are chosen so.
+    """
+    if asked.balls is None:
+        balls = [BALL * float(gear.normal_module)]
+    else:
+        middle = gear.reference_diameter + 2.0 * gear.profile_shift * gear.normal_module
+        each = sorted(ball.value for ball in asked.balls)
+        balls = [ball for ball in each if ball_contact_diameter(gear, ball) >= middle]
+    return next((ball for ball in balls if touches(gear, ball)), None)
+
+
+def _mesh(pair: GearPair, name: MeshName, ends: list[Ends], asked: DrawingTable) -> MeshData:
+    """Centre distance and backlash of a mesh: of the thickest teeth nearest, the thinnest apart."""
+    distance = abs(float(pair.centre_distance))
+    low, high = asked.distance(distance)
+    made = [
+        GearPair(ends[0][k], ends[1][k], signed(distance + off, pair.wheel.teeth))
+        for k in (0, 1)
+        for off in (low, high)
+    ]
+    backlash = [float(circumferential_backlash(one)) for one in made]
+    normal = [float(normal_backlash(one)) for one in made]
+    return MeshData(
+        mesh=name.title,
+        centre_distance_mm=distance,
+        distance_allowances=asked.field,
+        lower_distance_allowance_mm=low,
+        upper_distance_allowance_mm=high,
+        least_backlash_mm=min(backlash),
+        largest_backlash_mm=max(backlash),
+        least_normal_backlash_mm=min(normal),
+        largest_normal_backlash_mm=max(normal),
+    )
+
+
+def _material(design: DriveDesign, mesh: int, member: str, table: GearTable) -> str:
+    """Material of a gear with its hardness, as a rating names it, else as the file does."""
+    rows = design.rating.gears if design.rating else ()
+    rated = [row.material for row in rows if (row.stage, row.member) == (mesh, member)]
+    if rated:
+        return rated[0]
+    return iso_material.material(table) if table.steel or table.iso_material else ""
+
+
+def _relief(scene: Scene, design: DriveDesign, member: str) -> dict[str, float]:
+    """Tip relief of a gear: of a pair that is designed with it, else that of a rating."""
+    if design.relief is not None:
+        own = getattr(design.relief, member)
+        return {"tip_relief_mm": own.amount_mm, "relief_diameter_mm": own.start_diameter_mm}
+    if design.flank is not None and any(design.flank.relief_mm):
+        k = MEMBERS.index(member)
+        where = design.flank.relief_diameters_mm[k]
+        return {"tip_relief_mm": design.flank.relief_mm[k], "relief_diameter_mm": where}
+    asked = scene.rating.iso6336.tip_relief if scene.rating else None
+    return {"tip_relief_mm": asked.value} if asked else {}
+
+
+def _unverified(
+    called: str, pair: GearPair, member: int, grade: int, edition: str
+) -> Iterator[str]:
+    """Yield what of a gear's data no second source has, or is beyond a standard's ranges."""
+    if edition == "2013":
+        yield OF_2013
+    both = GearPair(pair.gears[member], pair.gears[member], pair.centre_distance)
+    if sizes := beyond(both, (grade, grade), edition):
+        yield BEYOND.format(gear=called, sizes=" and ".join(sizes))
+
+
+def _assumed(scene: Scene) -> str:
+    """By what the drawings' data are, and what of it the file does not say."""
+    asked = scene.drawing
+    assert asked is not None
+    words = {
+        "allowance": f"tooth thickness by {asked.fit}",
+        "centre_distance": f"centre distance {asked.field}",
+    }
+    usual = {key: " (default)" * (key not in asked.model_fields_set) for key in words}
+    said = [f"{text}{usual[key]}" for key, text in words.items()]
+    return (
+        f"Drawing data: {', '.join(said)}; backlash is that of teeth and centre distance alone, "
+        "without runout, parallelism, temperature and bearings."
+    )

@@ -1,0 +1,132 @@
+"""The table [drawing]: by what the data of gear drawings follow."""
+
+import re
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from gearopt.physics.fits import (
+    GRADES,
+    SERIES,
+    TOLERANCES,
+    distance_allowance,
+    thickness_allowances,
+)
+from gearopt.physics.gears import Gear
+from gearopt.physics.iso6336.accuracy import TOLERANCES as EDITIONS
+from gearopt.scenes.reading.allowances import allowances, texts_of
+from gearopt.scenes.reading.fields import Reads, Table, choice, quantity, refuse, whole
+from gearopt.scenes.reading.lists import several
+from gearopt.units import Quantity
+
+_LONGEST_FIRST = "|".join(sorted(SERIES, key=len, reverse=True))
+FIT = re.compile(rf"({_LONGEST_FIRST})({'|'.join(map(str, TOLERANCES))})")
+NO_FIT = (
+    "is neither a fit of DIN 3967, of a series a to h and a tolerance 21 to 30, nor two allowances"
+)
+LIMITS = allowances("0.05 mm")
+FIELDS = {f"js{grade}": grade for grade in GRADES}
+Allowances = tuple[Quantity, Quantity]  # lower, upper
+
+
+def _fit() -> Reads:
+    """Read a fit of DIN 3967 as (series, tolerance), or two allowances, none above zero."""
+
+    def read(value: Any, example: Any) -> tuple[str, int] | Allowances:
+        if isinstance(value, tuple):
+            return value  # read before
+        text = re.sub(r"^(?:DIN 3967 *)?(\d\d)?([a-z]*)(\d\d)?$", r"\2\1\3", str(value).strip())
+        if isinstance(value, str) and (fit := FIT.fullmatch(text)):
+            return fit[1], int(fit[2])
+        if texts_of(value) is None:
+            raise refuse(NO_FIT)
+        low, high = LIMITS.reader(value, LIMITS.example)
+        if high.number > 0:
+            rule = "has an allowance above zero: teeth are thinned, not thickened"
+            raise refuse(rule, [f"-{high}", "0 mm"] if low.number >= 0 else [str(low), "0 mm"])
+        return low, high
+
+    schema = {"anyOf": [{"type": "string"}, LIMITS.schema]}
+    return Reads(read, "cd25", schema)
+
+
+def _field() -> Reads:
+    """Read js of a grade as that number, or two allowances of a centre distance."""
+
+    def read(value: Any, example: Any) -> int | Allowances:
+        if isinstance(value, int | tuple) and not isinstance(value, bool):
+            return value  # read before
+        if isinstance(value, str) and value.lower() in FIELDS:
+            return FIELDS[value.lower()]
+        if texts_of(value) is None:
+            raise refuse(f"is neither one of {', '.join(FIELDS)} nor two allowances")
+        low, high = LIMITS.reader(value, LIMITS.example)
+        return low, high
+
+    return Reads(read, "js7", {"anyOf": [{"enum": list(FIELDS)}, LIMITS.schema]})
+
+
+class DrawingTable(Table):
+    """Data of a drawing of each gear: measures with allowances, tolerances, backlash.
+
+    An empty table asks for them by what is usual.
+    """
+
+    allowance: Annotated[tuple[Any, Any], _fit()] = Field(
+        ("cd", 25),
+        description='Allowances of the tooth thickness: a fit of DIN 3967, or two as "-0.05/-0.09 '
+        'mm"; a thickness_allowance of a gear is its upper one, with the tolerance of these',
+        json_schema_extra={"default": "cd25"},
+    )
+    centre_distance: Annotated[Any, _field()] = Field(
+        7,
+        description='Allowances of the centre distance: js5 to js11 of ISO 286, or two as "±0.02 '
+        'mm"',
+        json_schema_extra={"default": "js7"},
+    )
+    accuracy_grade: Annotated[int | None, whole(6, 0, 12, scale=True)] = Field(
+        None,
+        description="Accuracy grade of ISO 1328-1 of all gears; by default that of a rating by "
+        "ISO 6336, else 6",
+    )
+    tolerances: Annotated[str | None, choice(*EDITIONS)] = Field(
+        None,
+        description="Edition of ISO 1328-1; by default that of a rating by ISO 6336, else 1995. "
+        "No printed example of 2013 was met: unverified",
+    )
+    balls: Annotated[
+        tuple[Quantity, ...] | None, several(quantity("length", "3 mm"), ["3 mm", "3.5 mm"])
+    ] = Field(
+        None,
+        description="Diameters of measuring balls at hand, of which the smallest is taken that "
+        "touches the flanks at d + 2 x m_n or nearer the tip; by default one of 1.728 m_n",
+    )
+
+    @property
+    def fit(self) -> str:
+        """By what the allowances of the tooth thickness are."""
+        first, second = self.allowance
+        return f"DIN 3967 {first}{second}" if isinstance(first, str) else f"{first} and {second}"
+
+    @property
+    def field(self) -> str:
+        """By what the allowances of the centre distance are."""
+        field = self.centre_distance
+        return f"js{field}" if isinstance(field, int) else f"{field[0]} and {field[1]}"
+
+    def thickness(self, gear: Gear) -> tuple[float, float]:
+        """Upper and lower allowance [mm] of a gear; its own upper one takes the fit's place."""
+        if isinstance(self.allowance[0], str):
+            size = abs(float(gear.reference_diameter))
+            upper, lower = thickness_allowances(size, *self.allowance)
+        else:
+            lower, upper = (end.value for end in self.allowance)
+        own = float(gear.thickness_allowance)
+        return (own, own + lower - upper) if own else (upper, lower)
+
+    def distance(self, distance: float) -> tuple[float, float]:
+        """Lower and upper allowance [mm] of a centre distance [mm]."""
+        if isinstance(self.centre_distance, int):
+            above = distance_allowance(distance, self.centre_distance)
+            return -above, above
+        return self.centre_distance[0].value, self.centre_distance[1].value
