@@ -8,7 +8,7 @@ from typer.main import get_command
 from gearopt.cli import answering, trading  # noqa: F401
 
 # isort: split
-from gearopt.cli import authoring, machine_commands, materials, reporting  # noqa: F401
+from gearopt.cli import authoring, exporting, machine_commands, materials, reporting  # noqa: F401
 from gearopt.cli.app import app, told
 from gearopt.cli.names import fill
 from gearopt.cli.writing import tolerant_of_closed_pipe
@@ -23,6 +23,7 @@ ORDER = (
     "check",
     "compare",
     "report",
+    "export",
     "materials",
     "schema",
     "doctor",

@@ -51,22 +51,25 @@ BESIDE = ".gearopt-"  # with a process number: files that are being written
 PROBLEM, TABLE = ".toml", ".csv"  # endings: of files that are never written, and of tables
 
 
-def check_html(path: Path | None, *given: Path) -> None:
+def check_html(
+    path: Path | None, *given: Path, option: str = "--html", example: str = "page.html"
+) -> None:
     """Raise GearoptError where a page cannot be written, before long work begins.
 
-    given: the files that the run reads. A link counts as the file that it leads to.
+    given: the files that the run reads. A link counts as the file that it leads to. option,
+    example: of another file.
     """
     if path is None:
         return
     if path.is_dir():
-        raise GearoptError(f"--html {path}: is a folder; name a file, such as {path / 'page.html'}")
+        raise GearoptError(f"{option} {path}: is a folder; name a file, such as {path / example}")
     folder = _place(path).parent
     if not folder.is_dir():
-        raise GearoptError(f"--html {path}: there is no folder {folder}")
-    plain = path.with_name(f"{path.stem}-page.html")
-    _spare(f"--html {path}", path, given, f"name another file, such as {plain}")
+        raise GearoptError(f"{option} {path}: there is no folder {folder}")
+    plain = path.with_name(f"{path.stem}-{example}")
+    _spare(f"{option} {path}", path, given, f"name another file, such as {plain}")
     if _ordinary(path) and not (os.access(folder, os.W_OK) and _writable(path)):
-        raise GearoptError(f"--html {path}: nothing may be written there")
+        raise GearoptError(f"{option} {path}: nothing may be written there")
 
 
 def check_csv(folder: Path | None, html: Path | None, *given: Path) -> None:

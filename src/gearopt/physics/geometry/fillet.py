@@ -242,15 +242,21 @@ def form_diameter(gear: Gear) -> Any:
     return 2.0 * fillet_point(gear, fillet_end(gear)).radius
 
 
-def profile(gear: Gear, on_fillet: int, on_flank: int) -> tuple[Any, Any]:
+def profile(gear: Gear, on_fillet: int, on_flank: int, rolled: bool = False) -> tuple[Any, Any]:
     """Return x and y [mm] of one side of a tooth, from the root circle to the tip circle.
 
-    on_fillet, on_flank: points of either, at least 2; the arrays have on_fillet + on_flank - 1. Of
+    on_fillet, on_flank: points of either, at least 2; the arrays have on_fillet + on_flank - 1;
+    those of the flank are at even radii, or rolled: at even angles of roll. Of
     one gear of floats; a flank above a pointed tip is left as it is computed, with x < 0.
     """
     theta = np.linspace(0.5 * np.pi, float(fillet_end(gear)), on_fillet)
     fillet = fillet_point(gear, theta)
-    radius = np.linspace(fillet.radius[-1], 0.5 * gear.tip_diameter, on_flank)[1:]
+    ends, base = (fillet.radius[-1], 0.5 * gear.tip_diameter), 0.5 * gear.base_diameter
+    if rolled:
+        low, high = (float(max(r**2 - base**2, 0.0)) ** 0.5 for r in ends)  # r_b times the roll
+        radius = signed(np.hypot(base, np.linspace(low, high, on_flank)[1:]), gear.teeth)
+    else:
+        radius = np.linspace(*ends, on_flank)[1:]
     half = half_angle(gear, radius)
     x = np.concatenate((fillet.x, radius * np.sin(half)))
     return x, np.concatenate((fillet.y, radius * np.cos(half)))

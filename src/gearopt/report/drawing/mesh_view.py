@@ -88,8 +88,7 @@ def _mesh(pair: GearPair, stage: int, names: tuple[str, str], stages: int) -> Dr
     sheet = sheet_of(pair, (8.0, 8.0, 8.0, 8.0))
     for name, gear, at in zip(names, pair.gears, axes(pair), strict=True):
         rim = [(x, y + at) for x, y in sector(gear, at)]
-        path_ = "M " + " L ".join(f"{x:.1f} {y:.1f}" for x, y in (sheet.at(*p) for p in rim)) + " Z"
-        sheet.shape(path_, "tip", series(stage), f"{name} {stage}" if stages > 1 else name)
+        sheet.outline(rim, "tip", series(stage), f"{name} {stage}" if stages > 1 else name)
         pitch_circle(sheet, at, pair.normal_module, series(stage))
     action(sheet, pair, path)
     caption = [f"Stage {stage}"] if stages > 1 else []
@@ -145,14 +144,16 @@ def sector(gear: Gear, at: float, turned: int = 0) -> list[Point]:
     return [*rim, *((beyond * x, beyond * y) for x, y in reversed(rim))]
 
 
-def tooth(gear: Gear, at: float, number: int) -> list[Point]:
+def tooth(gear: Gear, at: float, number: int, fine: int = 0) -> list[Point]:
     """The outline [mm] about its axis of one tooth, as `sector` has it, left to right.
 
     number: 0 has the flank through the pitch point, 1 is the next one to the right, and so on.
+    fine: points of a fillet, and of a flank at even angles of roll.
     """
     sign = -math.copysign(1.0, at)
-    points = zip(*profile(gear, FILLET, FLANK), strict=True)  # from the root to the tip
-    side = [(math.atan2(x, abs(y)), math.hypot(x, y)) for x, y in points]
+    sides = profile(gear, fine, fine, rolled=True) if fine else profile(gear, FILLET, FLANK)
+    flank = zip(*sides, strict=True)  # from the root to the tip
+    side = [(math.atan2(x, abs(y)), math.hypot(x, y)) for x, y in flank]
     half = float(half_angle(gear, signed(abs(at), gear.teeth)))
     middle = number * 2.0 * math.pi / abs(gear.teeth) - sign * half
     rim = [(middle - angle, r) for angle, r in side]

@@ -147,11 +147,31 @@ def around(
 
 
 @dataclass(frozen=True)
+class Mark:
+    """A mark of a drawing as other formats take it: to scale [mm], not rounded.
+
+    form: "circle" (its centre; size: radius), "arc" (ends: angles [rad], anticlockwise), "line",
+    "outline" (closed; bulges: tan(a/4) of the arc of angle a from each point to the next, 0 of a
+    straight line; none: all straight), "text" (its centre, size: height, ends: angle [rad]) or
+    "dimension" (both points, then one of the dimension line). style: as of drawing.css.
+    """
+
+    form: str
+    points: tuple[Point, ...]
+    style: str
+    size: float = 0.0
+    ends: Point = (0.0, 0.0)
+    text: str = ""
+    bulges: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
 class Drawing:
     """An SVG (all text in it is escaped), its size at full scale [px], and its caption.
 
     true: it never shrinks, so that its scale holds: it is scrolled on a narrow screen, and printed
-    on a sheet of its own where it is wider than paper.
+    on a sheet of its own where it is wider than paper. marks: the same for other formats, within a
+    frame of lower left and upper right corner [mm].
     """
 
     svg: str
@@ -159,6 +179,8 @@ class Drawing:
     height: float
     caption: str
     true: bool = False
+    marks: tuple[Mark, ...] = ()
+    frame: tuple[Point, Point] = ((0.0, 0.0), (0.0, 0.0))
 
 
 @dataclass(frozen=True)
@@ -190,10 +212,15 @@ class Sheet:
         self._marks: list[str] = []
         self._labels: list[str] = []
         self._ink = Ink(self.width, self.height)
+        self._record: list[Mark] = []
 
     def at(self, x: float, y: float) -> Point:
         """A point [mm] in px, y downwards."""
         return self._origin[0] + self.scale * x, self._origin[1] - self.scale * y
+
+    def _mm(self, x: float, y: float) -> Point:
+        """A point [px] in mm."""
+        return (x - self._origin[0]) / self.scale, (self._origin[1] - y) / self.scale
 
     def circle(
         self, x: float, y: float, r: float, style: str, colour: str = "", title: str = ""
@@ -202,6 +229,7 @@ class Sheet:
         cx, cy = self.at(x, y)
         size = self.scale * r
         self._add("circle", f'cx="{cx:.2f}" cy="{cy:.2f}" r="{size:.2f}"', style, colour, title)
+        self._record.append(Mark("circle", ((x, y),), style, r))
         count = _count(size, 8)
         turns = (2.0 * math.pi * k / count for k in range(count))
         self._ink.add((cx + size * math.cos(t), cy + size * math.sin(t)) for t in turns)
@@ -216,6 +244,7 @@ class Sheet:
             half = f"A {r:.2f} {r:.2f} 0 0 {sweep}"
             path += f"M {cx - r:.2f} {cy:.2f} {half} {cx + r:.2f} {cy:.2f} "
             path += f"{half} {cx - r:.2f} {cy:.2f} Z "
+            self._record.append(Mark("circle", ((x, y),), style, radius))
         self.shape(path.strip(), style, colour, title)
 
     def rectangle(
@@ -224,11 +253,13 @@ class Sheet:
         """Draw a rectangle between two corners [mm]."""
         (x0, y0), (x1, y1) = self.at(*a), self.at(*b)
         x, y, width, height = min(x0, x1), min(y0, y1), abs(x1 - x0), abs(y1 - y0)
-        corners = f'x="{x:.2f}" y="{y:.2f}" width="{width:.2f}" height="{height:.2f}"'
-        self._add("rect", f'{corners} rx="{round_:g}"', style, colour, title)
+        where = f'x="{x:.2f}" y="{y:.2f}" width="{width:.2f}" height="{height:.2f}"'
+        self._add("rect", f'{where} rx="{round_:g}"', style, colour, title)
         ends = ((x, y), (x + width, y), (x + width, y + height), (x, y + height), (x, y))
         for start, end in pairwise(ends):
             self._ink.add(_along(start, end))
+        corners = a, (b[0], a[1]), b, (a[0], b[1])
+        self._record.append(Mark("outline", corners, style))
 
     def slice(
         self,
@@ -257,12 +288,27 @@ class Sheet:
         path = f"{first} A {size:.2f} {size:.2f} 0 {int(end - start > math.pi)} 0 {x1:.2f} {y1:.2f}"
         self._add("path", f'd="{path}{"" if rim else " Z"}"', style, colour, title)
         self._ink.add(arc)
+        self._record.append(Mark("arc", (at,), style, r, ends))
         for corner in () if rim else (arc[0], arc[-1]):
             self._ink.add(_along((cx, cy), corner))
+            self._record.append(Mark("line", (at, self._mm(*corner)), style))
 
     def shape(self, path: str, style: str, colour: str = "", title: str = "") -> None:
         """Draw an SVG path [px], over which labels may be written."""
         self._add("path", f'd="{path}"', style, colour, title)
+
+    def outline(
+        self,
+        points: Sequence[Point],
+        style: str,
+        colour: str = "",
+        title: str = "",
+        bulges: Sequence[float] = (),
+    ) -> None:
+        """Draw a closed outline through points [mm]; bulges of its arcs: as of a `Mark`."""
+        path = " L ".join(f"{x:.2f} {y:.2f}" for x, y in (self.at(*p) for p in points))
+        self.shape(f"M {path} Z", style, colour, title)
+        self._record.append(Mark("outline", tuple(points), style, bulges=tuple(bulges)))
 
     def line(self, a: Point, b: Point, style: str, colour: str = "") -> None:
         """Draw a line [mm]."""
@@ -289,7 +335,7 @@ class Sheet:
 
         away > 0: below a level line, left of an upright one.
         """
-        (x0, y0), (x1, y1) = self.at(*a), self.at(*b)
+        (x0, y0), (x1, y1), kept = self.at(*a), self.at(*b), len(self._record)
         upright = abs(x1 - x0) < abs(y1 - y0)
         dx, dy = (-away, 0.0) if upright else (0.0, away)
         past = 1.0 + 5.0 / abs(away)
@@ -299,6 +345,9 @@ class Sheet:
         self.arrows(start, end)
         x, y = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
         self.label(text, [Place(x - 9.0, y, -90.0) if upright else Place(x, y - 9.0)], "size")
+        self._record[kept:] = [
+            Mark("dimension", (a, b, self._mm(*start)), "size", SIZE / self.scale, text=text)
+        ]
 
     def tick(self, start: Point, end: Point) -> None:
         """Draw a thin line [px], as those that lead from a body to its dimension."""
@@ -330,6 +379,8 @@ class Sheet:
         nx, ny = -uy * ARROW[1], ux * ARROW[1]
         corners = f"{x:.2f},{y:.2f} {bx + nx:.2f},{by + ny:.2f} {bx - nx:.2f},{by - ny:.2f}"
         self._add("polygon", f'points="{corners}"', f"{style} head")
+        each = ((x, y), (bx + nx, by + ny), (bx - nx, by - ny))
+        self._record.append(Mark("outline", tuple(self._mm(*p) for p in each), style))
         return bx, by
 
     def label(self, text: str, places: Sequence[Place], style: str, colour: str = "") -> None:
@@ -341,6 +392,12 @@ class Sheet:
         turned = f' transform="rotate({place.angle:.2f} {x:.2f} {y:.2f})"' if place.angle else ""
         where = f'x="{x:.2f}" y="{y:.2f}"{turned}{_colour(colour)}'
         self._labels.append(f'<text class="{style}" {where}>{escape(text)}</text>')
+        self._write(text, place)
+
+    def _write(self, text: str, place: Place) -> None:
+        """Record a text."""
+        ends, size = (math.radians(-place.angle), 0.0), SIZE / self.scale
+        self._record.append(Mark("text", (self._mm(place.x, place.y),), "", size, ends, text))
 
     def balloon(self, text: str, places: Sequence[Place]) -> None:
         """Write a short text in a circle."""
@@ -351,6 +408,9 @@ class Sheet:
         self._labels.append(f'<circle class="balloon" {where}/>')
         where = f'x="{place.x:.2f}" y="{place.y:.2f}"'
         self._labels.append(f'<text class="balloon" {where}>{escape(text)}</text>')
+        self._write(text, place)
+        at = self._mm(place.x, place.y)
+        self._record.append(Mark("circle", (at,), "balloon", 0.8 * SIZE / self.scale))
 
     def drawing(
         self, name: str, caption: str, cut: bool = False, behind: str = "", front: str = ""
@@ -362,7 +422,9 @@ class Sheet:
         box = ('class="cut" ' if cut else "") + f'viewBox="0 0 {self.width:.3f} {self.height:.3f}"'
         marks = "\n".join(filter(None, (behind, *self._marks, *self._labels, front)))
         svg = f'<svg {box} role="img" aria-label="{escape(name)}">\n{marks}\n</svg>'
-        return Drawing(svg, self.width, self.height, caption)
+        frame = self._mm(0.0, self.height), self._mm(self.width, 0.0)
+        record = tuple(self._record)
+        return Drawing(svg, self.width, self.height, caption, marks=record, frame=frame)
 
     def _leader(self, text: str, place: Place, style: str) -> None:
         """Draw a thin line from what a label names to the label's edge."""
@@ -377,6 +439,7 @@ class Sheet:
     def _stroke(self, start: Point, end: Point, style: str, colour: str = "") -> None:
         ends = f'x1="{start[0]:.2f}" y1="{start[1]:.2f}" x2="{end[0]:.2f}" y2="{end[1]:.2f}"'
         self._add("line", ends, style, colour)
+        self._record.append(Mark("line", (self._mm(*start), self._mm(*end)), style))
         if style != "hatch":
             self._ink.add(_along(start, end))
 

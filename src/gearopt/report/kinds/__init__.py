@@ -4,7 +4,8 @@ Each module here is a kind, of the name that its scene has, and holds `Pages` ca
 is registered: a kind without a module, and a problem of a user's own, have those of `generic`.
 """
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import field
 from importlib import import_module
 from pkgutil import iter_modules
 from typing import Any
@@ -15,6 +16,8 @@ from gearopt.report.measures import Measures
 from gearopt.report.section import Section, Tile
 
 MakeSection = Callable[[Result, Measures], Section | None]  # None: nothing to show of it
+
+Export = Callable[[Result], bytes]  # ValueError, ImportError: why there is none
 
 
 def _nothing(result: Result, measures: Measures) -> Sequence[Any]:
@@ -38,8 +41,8 @@ class Pages:
     binding_limit: in words what decides a design, "" where its limits say it; figures: the end of
     that sentence where no key figures stand beside. warns: sentences to be read before the numbers.
     drawn: whether there is a drawing of its designs. whole: what a limit of no single stage
-    belongs to, the head of that column. pages_of_given: those of designs that were given, where
-    they are others.
+    belongs to, the head of that column. exports: files for other programs, by their format.
+    pages_of_given: those of designs that were given, where they are others.
     """
 
     sections: tuple[MakeSection, ...]
@@ -52,6 +55,7 @@ class Pages:
     warns: Callable[[Result, Measures], Sequence[str]] = _nothing
     drawn: bool = True
     whole: str = "design"
+    exports: Mapping[str, Export] = field(default_factory=dict)
     pages_of_given: "Pages | None" = None
 
 

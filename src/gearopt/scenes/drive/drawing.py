@@ -69,6 +69,7 @@ def drawing_data(scene: Scene, design: DriveDesign) -> DrawingData:
     )
     several = len(design.stages) > 1
     gears, meshes, unverified = list[GearData](), list[MeshData](), list[str]()
+    mates = dict[str, list[str]]()
     for k, (pair, name) in enumerate(zip(pairs, names, strict=True)):
         _check_whole(pair, name)
         own = meshed.stage_tables[k]
@@ -80,6 +81,8 @@ def drawing_data(scene: Scene, design: DriveDesign) -> DrawingData:
         meshes.append(_mesh(pair, name, ends, asked))
         for member, gear in enumerate(pair.gears):
             called = f"{name.gears[member]} {name.stage}" if several else name.gears[member]
+            called = f"wheel {name.stage - 1}" if own.idler and member == 0 else called
+            mates.setdefault(called, []).append(f"z {abs(pair.gears[1 - member].teeth):g}")
             if member == 0 and (own.idler or name.pinion != name.gears[0]):
                 continue  # it is the wheel of the mesh before
             grade, edition = _accuracy(scene, tables[member], member)
@@ -88,7 +91,7 @@ def drawing_data(scene: Scene, design: DriveDesign) -> DrawingData:
                 data(
                     stage=name.stage,
                     gear=called,
-                    mate=f"z {abs(pair.gears[1 - member].teeth):g}",
+                    mate="",
                     hand=hand_of(gear, member, turned[k]),
                     material=_material(design, k + 1, MEMBERS[member], tables[member]),
                     **_relief(scene, design, MEMBERS[member]),
@@ -96,7 +99,9 @@ def drawing_data(scene: Scene, design: DriveDesign) -> DrawingData:
             )
             unverified += _unverified(called, pair, member, grade, edition)
     return DrawingData(
-        gears=tuple(gears), meshes=tuple(meshes), unverified=tuple(dict.fromkeys(unverified))
+        gears=tuple(replace(gear, mate=" and ".join(mates[gear.gear])) for gear in gears),
+        meshes=tuple(meshes),
+        unverified=tuple(dict.fromkeys(unverified)),
     )
 
 

@@ -17,9 +17,11 @@ from gearopt.report.design_tables import (
 )
 from gearopt.report.drawing import layout_views, mesh_view, train_views
 from gearopt.report.drawing.bodies import layout_of
+from gearopt.report.exports import drawn, gears, listed
 from gearopt.report.headline import of_limits
 from gearopt.report.kinds import Pages
 from gearopt.report.kinds.drive import (
+    drawing_tables,
     impossible_layout,
     layout_solid,
     planetary,
@@ -401,13 +403,15 @@ CAPACITIES = rating_gears.gears, rating_gears.static
 RATINGS = (
     *(rating_gears.gears, rating_tables.forces, rating_gears.factors),
     *(rating_gears.levels, rating_gears.static, mesh_view.section, rating_tables.teeth),
+    drawing_tables.section,
 )
 PAGES_OF_GIVEN = Pages(
     sections=(
         *(summary, *RATINGS[:2], *DRAWINGS, *RATINGS[2:]),
         *(planetary.loads, numbers, asked, assumptions),
     ),
-    terminal=(*CAPACITIES, planetary.loads, rating_gears.factors, rating_tables.forces),
+    terminal=(*CAPACITIES, planetary.loads, rating_gears.factors, rating_tables.forces)
+    + (drawing_tables.section,),
     tiles=rating_words.tiles,
     binding_limit=rating_words.binding_limit,
     figures=rating_words.figures,
@@ -435,6 +439,7 @@ PAGES = Pages(
         counts,
         limits,
         *CAPACITIES,
+        drawing_tables.section,
         trains,
         processes,
         *AFTER_DESIGN,
@@ -445,5 +450,9 @@ PAGES = Pages(
     binding_limit=binding_limit,
     warns=rating_words.warns,
     whole="drive",
+    exports={
+        "dxf": drawn(layout_views.section, train_views.section, also=gears),
+        "csv": listed(places, drawing_tables.section),
+    },
     pages_of_given=PAGES_OF_GIVEN,
 )

@@ -38,8 +38,9 @@ def single(rating: DriveRating) -> bool:
 
 
 def design(result: Result, measures: Measures) -> Section | None:
-    """The tables of a design, without those of its rating; None without a design."""
-    others = {key: value for key, value in result.design.items() if key != "rating"}
+    """The tables of a design, without those of rating and drawings; None without a design."""
+    own = ("rating", "drawing")
+    others = {key: value for key, value in result.design.items() if key not in own}
     return design_section(replace(result, design=others), measures)
 
 

@@ -19,6 +19,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report.answer import asked, assumptions, limits, progress, proven, summary
 from gearopt.report.explained import remedies, sensitivities
+from gearopt.report.exports import listed
 from gearopt.report.headline import of_limits
 from gearopt.report.kinds import Pages
 from gearopt.report.kinds.dynamics import plots
@@ -372,6 +373,7 @@ PAGES = Pages(
     binding_limit=binding_limit,
     warns=warns,
     drawn=False,
+    exports={"csv": listed(motion, speeds)},
     pages_of_given=Pages(
         sections=(summary, *SECTIONS, assumptions),
         terminal=(rest, stability, motion, speeds, summary),

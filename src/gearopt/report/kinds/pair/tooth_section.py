@@ -104,8 +104,7 @@ def _outline(sheet: Sheet, gear: Gear, window: Window, colour: str, title: str) 
     points = [point for point in points if abs(point[0]) <= window.right]
     low = window.bottom - 0.2 * gear.normal_module
     ends = [(points[0][0], low), *points, (points[-1][0], low)]
-    path = " L ".join(f"{u:.2f} {v:.2f}" for u, v in (sheet.at(*p) for p in ends))
-    sheet.shape(f"M {path} Z", "tip", colour, title)
+    sheet.outline(ends, "tip", colour, title)
 
 
 def _circles(sheet: Sheet, gear: Gear, window: Window, measures: Measures) -> None:

@@ -1,7 +1,7 @@
 """A strain wave gearing: it runs, how near its teeth come, what they carry, and its cutter."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
@@ -13,12 +13,13 @@ from gearopt.formulations.strain_wave.shift import STEP_DEG
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report.answer import asked, assumptions, limits, summary
-from gearopt.report.drawing.sheet import series
+from gearopt.report.drawing.sheet import Drawing, series
+from gearopt.report.exports import drawn, listed
 from gearopt.report.headline import exceeded, of_limits
 from gearopt.report.kinds import Pages
 from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, OPENING, REQUEST
 from gearopt.report.kinds.strain_wave import hob, tables
-from gearopt.report.kinds.strain_wave.cutter import breadth, drawing, usual_scale
+from gearopt.report.kinds.strain_wave.cutter import breadth, drawing, of_flanks, usual_scale
 from gearopt.report.kinds.strain_wave.motion import running
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.plots import Figure, axis, band, layout, lines, upright
@@ -310,6 +311,12 @@ def _least(tool: CutterDesign) -> str:
     return f"{edge} from {tool.least_teeth} teeth on."
 
 
+def flanks(result: Result) -> Iterator[Drawing]:
+    """Yield the drawings of both flanks."""
+    if (design := design_of(result)) is not None:
+        yield from of_flanks(design)
+
+
 def numbers(result: Result, measures: Measures) -> Section | None:
     """The gearing in numbers, its flank, and other deflections."""
     if (design := design_of(result)) is None:
@@ -351,5 +358,6 @@ PAGES = replace(
     PAGES_OF_GIVEN,
     sections=(*OPENING, *OWN_SECTIONS, *REQUEST, search, *CLOSING),
     terminal=(numbers, loaded_teeth, cutter, limits, *AFTER_DESIGN),
+    exports={"dxf": drawn(cutter, also=flanks), "csv": listed(numbers, cutter, ending="flank")},
     pages_of_given=PAGES_OF_GIVEN,
 )

@@ -1,12 +1,14 @@
 """The edge of a cutter at a large scale on a grid, as a toolmaker plots it."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from gearopt.formulations.strain_wave.cutter_report import CutterDesign
+from gearopt.formulations.strain_wave.design import WaveDesign
 from gearopt.report.drawing.sheet import SHEET, Drawing, Place, Sheet, Window, series
 from gearopt.report.measures import Measures
 
@@ -42,8 +44,7 @@ def drawing(
     sheet = Sheet(Window(*ends, MARGINS), scale * PX_PER_MM)
     _grid(sheet, ends, step, measures)
     for tooth in teeth:
-        path = " L ".join(f"{u:.3f} {v:.3f}" for u, v in (sheet.at(*p) for p in tooth.tolist()))
-        sheet.shape(f"M {path} Z", "tip", series(1), "tooth of the cutter")
+        sheet.outline([(u, v) for u, v in tooth.tolist()], "tip", series(1), "tooth of the cutter")
     if tool.straight_deg:
         _straight(sheet, tool, SIDE_MARGIN * (ends[1] - ends[0]))
     for v, u in edge[::5].tolist():
@@ -56,6 +57,20 @@ def drawing(
     if tool.straight_deg:
         caption += f" Dashed: the straight edge of least deviation, {tool.straight_deg:.3f}°."
     return replace(sheet.drawing("cutting edge", caption), true=True)
+
+
+def of_flanks(design: WaveDesign) -> Iterator[Drawing]:
+    """Yield a tooth of the flexspline, and a space of the circular spline: for CAD."""
+    for name, across, up in (
+        ("tooth of the flexspline", design.tooth_half_mm, design.tooth_height_mm),
+        ("space of the circular spline", design.space_across_mm, design.space_out_mm),
+    ):
+        right = list(zip(across, up, strict=True))
+        wide = max(across)
+        sheet = Sheet(window := Window(-wide, wide, min(up), max(up)), window.scale(SHEET, SHEET))
+        sheet.outline([*right, *((-x, y) for x, y in reversed(right))], "tip", title=name)
+        sheet.line((0.0, min(up)), (0.0, max(up)), "axis")
+        yield sheet.drawing(name, name)
 
 
 def usual_scale(tool: CutterDesign, pitch: float, grid: float) -> float:

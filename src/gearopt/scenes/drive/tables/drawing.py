@@ -25,7 +25,7 @@ NO_FIT = (
     "is neither a fit of DIN 3967, of a series a to h and a tolerance 21 to 30, nor two allowances"
 )
 LIMITS = allowances("0.05 mm")
-FIELDS = {f"js{grade}": grade for grade in GRADES}
+FIELDS = {f"js{grade}": grade for grade in GRADES}  # of ISO 286
 Allowances = tuple[Quantity, Quantity]  # lower, upper
 
 
@@ -51,13 +51,13 @@ def _fit() -> Reads:
 
 
 def _field() -> Reads:
-    """Read js of a grade as that number, or two allowances of a centre distance."""
+    """Read js of a grade as it is, or two allowances of a centre distance."""
 
-    def read(value: Any, example: Any) -> int | Allowances:
-        if isinstance(value, int | tuple) and not isinstance(value, bool):
+    def read(value: Any, example: Any) -> str | Allowances:
+        if isinstance(value, tuple):
             return value  # read before
         if isinstance(value, str) and value.lower() in FIELDS:
-            return FIELDS[value.lower()]
+            return value.lower()
         if texts_of(value) is None:
             raise refuse(f"is neither one of {', '.join(FIELDS)} nor two allowances")
         low, high = LIMITS.reader(value, LIMITS.example)
@@ -79,10 +79,9 @@ class DrawingTable(Table):
         json_schema_extra={"default": "cd25"},
     )
     centre_distance: Annotated[Any, _field()] = Field(
-        7,
+        "js7",
         description='Allowances of the centre distance: js5 to js11 of ISO 286, or two as "±0.02 '
         'mm"',
-        json_schema_extra={"default": "js7"},
     )
     accuracy_grade: Annotated[int | None, whole(6, 0, 12, scale=True)] = Field(
         None,
@@ -112,7 +111,7 @@ class DrawingTable(Table):
     def field(self) -> str:
         """By what the allowances of the centre distance are."""
         field = self.centre_distance
-        return f"js{field}" if isinstance(field, int) else f"{field[0]} and {field[1]}"
+        return field if isinstance(field, str) else f"{field[0]} and {field[1]}"
 
     def thickness(self, gear: Gear) -> tuple[float, float]:
         """Upper and lower allowance [mm] of a gear; its own upper one takes the fit's place."""
@@ -126,7 +125,7 @@ class DrawingTable(Table):
 
     def distance(self, distance: float) -> tuple[float, float]:
         """Lower and upper allowance [mm] of a centre distance [mm]."""
-        if isinstance(self.centre_distance, int):
-            above = distance_allowance(distance, self.centre_distance)
+        if isinstance(self.centre_distance, str):
+            above = distance_allowance(distance, FIELDS[self.centre_distance])
             return -above, above
         return self.centre_distance[0].value, self.centre_distance[1].value
