@@ -46,11 +46,12 @@ def export(
     if len(asked) != 1:
         raise GearoptError(f"export writes one format: add one of {_options(FORMATS)}")
     check_html(out, file, option="--out", example=f"gears.{asked[0]}")
-    result = _answer(file, seconds)
-    known = pages_of(result.scene).exports
-    if (make := known.get(asked[0])) is None:
-        instead = f"there is {_options(known)}" if known else "it is shown by --html"
-        raise GearoptError(f"--{asked[0]}: no such file is made of kind {result.scene}; {instead}")
+    known, result = _read(file)
+    exports = pages_of(known).exports
+    if (make := exports.get(asked[0])) is None:
+        instead = f"there is {_options(exports)}" if exports else "solve FILE --html shows it"
+        raise GearoptError(f"--{asked[0]}: no such file is made of kind {known}; {instead}")
+    result = result or _answer(file, seconds)
     if not result.design:
         raise GearoptError(f"{file}: has no design to export ({result.status}: {result.message})")
     try:
@@ -68,15 +69,23 @@ def _options(names: Iterable[str]) -> str:
     return " or ".join(f"--{name}" for name in names)
 
 
+def _read(file: Path) -> tuple[str | None, Result | None]:
+    """The kind of a file, and the result that it keeps, if it is no problem file."""
+    from gearopt.api import load
+    from gearopt.scenes.reading.load import kind_of
+
+    if file.suffix != ".json":
+        return kind_of(load(file)), None
+    kept = kept_design(file, None)
+    assert isinstance(kept, Result)
+    return kept.scene, kept
+
+
 def _answer(file: Path, seconds: float) -> Result:
-    """The answer to a problem file, whose gears are rated where they are given; a kept result."""
+    """The answer to a problem file, whose gears are rated where they are given."""
     from gearopt.api import load, rate, solve
     from gearopt.scenes.reading.load import kind_named, kind_of
 
-    if file.suffix == ".json":
-        kept = kept_design(file, None)
-        assert isinstance(kept, Result)
-        return kept
     scene = load(file)
     if kind_named(kind_of(scene)).rate is not None and not getattr(scene, "to_size", True):
         return rate(file)

@@ -108,6 +108,7 @@ def test_wrong_values_are_one_clear_error(key, value, said):
     assert wrong.value.key == f"drawing.{key}"
 
 
+@pytest.mark.slow
 def test_an_idler_is_one_gear_with_two_mates(solved):
     design = drive_design(solved("idler").design)
     found = drawing_data(gearopt.load(PROBLEMS / "idler.toml", {"drawing": {}}), design).gears

@@ -12,15 +12,14 @@ import numpy as np
 from gearopt.formulations.drive.design import DriveDesign, StageDesign
 from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.geometry.contact import contact_path
-from gearopt.physics.geometry.fillet import form_diameter, profile
+from gearopt.physics.geometry.fillet import form_diameter
 from gearopt.report.drawing.mesh_view import action, axes, tooth
 from gearopt.report.drawing.sheet import Drawing, Place, Point, Sheet, Window, series
 from gearopt.report.drawing.stage_gears import meshes
 from gearopt.report.drawing.train_views import circles
 from gearopt.report.measures import Measures
 
-NEAR = 2e-5  # mm from the curves to the arcs that stand for them
-FEWEST, MOST = 5, 257  # points of a fillet, and of a flank
+POINTS = 65  # of a fillet, and of a flank: arcs are within 0.1 um of flanks of module 21
 FREE = (24.0, 110.0, 48.0, 24.0)  # px around a gear, whose circles are named on the right
 ACROSS = 640.0  # px of a drawing
 
@@ -44,52 +43,23 @@ def outline(gear: Gear, at: float) -> tuple[list[Point], list[float]]:
 
     at: as of `tooth`. Tips and roots are arcs of their circles.
     """
-    count = points_for(gear)
     every, bulges = list[Point](), list[float]()
     for number in range(abs(round(float(gear.teeth)))):
-        rim = tooth(gear, at, number, count)
+        rim = tooth(gear, at, number, POINTS)
         half = len(rim) // 2
         for side in (rim[:half], rim[half:]):
             every += side[::2]
             bulges += [*_bulges(np.array(side)).tolist(), 0.0]  # the last: of a tip or a root
-    for k in range(count - 1, len(every), count):
+    for k in range(POINTS - 1, len(every), POINTS):
         bulges[k] = _about_axis(every[k], every[(k + 1) % len(every)])
     return every, bulges
 
 
-def points_for(gear: Gear) -> int:
-    """Points of a fillet, and of a flank, of whose arcs through three none is NEAR or more off."""
-    count = FEWEST
-    while count < MOST:
-        fine = np.column_stack(profile(gear, 2 * count - 1, 2 * count - 1, rolled=True))
-        start, middle, end = fine[:-4:4], fine[2:-2:4], fine[4::4]
-        off = [_off(start, middle, end, fine[k : len(fine) - 4 + k : 4]) for k in (1, 3)]
-        if max(map(np.max, off)) < NEAR:
-            break
-        count = 2 * count - 1
-    return count
-
-
-def _off(start: Any, middle: Any, end: Any, other: Any) -> Any:
-    """How far points are off the arcs through three others, by their angles over the chord."""
-    turned = np.abs(_turn(start, middle, end) - _turn(start, other, end))
-    first, second, chord = (np.hypot(*way.T) for way in (other - start, end - other, end - start))
-    return turned * first * second / chord
-
-
 def _bulges(side: Any) -> Any:
     """Bulges tan(a/4) of the arcs through every three points of a side of a tooth."""
-    return np.tan(0.5 * _turn(side[:-2:2], side[1:-1:2], side[2::2]))
-
-
-def _turn(start: Any, middle: Any, end: Any) -> Any:
-    """By how much the way turns at the middle [rad]: half the angle of the arc."""
-    first, second = middle - start, end - middle
-    return np.arctan2(_cross(first, second), (first * second).sum(axis=1))
-
-
-def _cross(first: Any, second: Any) -> Any:
-    return first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+    first, second = side[1:-1:2] - side[:-2:2], side[2::2] - side[1:-1:2]
+    cross = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+    return np.tan(0.5 * np.arctan2(cross, (first * second).sum(axis=1)))
 
 
 def _about_axis(start: Point, end: Point) -> float:
