@@ -55,13 +55,13 @@ def export(
     if not result.design:
         raise GearoptError(f"{file}: has no design to export ({result.status}: {result.message})")
     try:
-        made = make(result).decode()
+        content = make(result).decode()
     except (ValueError, ImportError) as why:
         raise GearoptError(f"--{asked[0]}: {why}") from None
     if out is None:
-        print_whole(made, end="")
+        print_whole(content, end="")
         return
-    write(Written("--out", out, made))
+    write(Written("--out", out, content))
     print(f"{FORMATS[asked[0]]}: {out}", file=sys.stderr)
 
 

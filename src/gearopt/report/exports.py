@@ -15,11 +15,11 @@ from gearopt.report.section import Table
 def drawn(*pages: MakeSection, also: Callable[[Result], Iterable[Drawing]]) -> Export:
     """The way to the DXF of a result: what is drawn for CAD alone, and drawings of its page."""
 
-    def made(result: Result) -> bytes:
+    def export(result: Result) -> bytes:
         shown = (page(result, METRIC) for page in pages)
         return dxf((*also(result), *(d for it in shown if it is not None for d in it.drawings)))
 
-    return made
+    return export
 
 
 def gears(result: Result) -> Iterable[Drawing]:
@@ -33,7 +33,7 @@ def listed(*pages: MakeSection, ending: str = "") -> Export:
     ending: of the names of those that are wanted.
     """
 
-    def made(result: Result) -> bytes:
+    def export(result: Result) -> bytes:
         shown = [page(result, METRIC) for page in pages]
         tables = {
             table.name: table
@@ -49,4 +49,4 @@ def listed(*pages: MakeSection, ending: str = "") -> Export:
             texts = [f"{name}\r\n{text}" for name, text in zip(tables, texts, strict=True)]
         return "\r\n".join(texts).encode()
 
-    return made
+    return export

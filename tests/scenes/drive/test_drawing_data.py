@@ -81,7 +81,7 @@ def test_a_fit_may_be_written_either_way(text):
 def test_what_the_file_does_not_say_is_told():
     result = gearopt.rate(WIND, {"drawing": {"centre_distance": "js6"}})
     told = result.report["assumptions"][-1]
-    assert "DIN 3967 cd25 (default), centre distance js6;" in told
+    assert "DIN 3967 cd25 (default), centre distance js6, grade 6 unless" in told
 
 
 def test_tolerances_of_2013_are_marked_unverified():

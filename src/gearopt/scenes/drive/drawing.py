@@ -46,12 +46,12 @@ def with_drawing(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """The answer with the data of the drawing of every gear, or why there is none."""
     assert known is not None and scene.drawing is not None
     design = drive_design(known.design)
-    told, key = [_assumed(scene)], "assumptions"
     try:
         design = replace(design, drawing=drawing_data(scene, design))
+        sentence, key = _assumed(scene.drawing), "assumptions"
     except (SolveError, ValueError) as reason:
-        told, key = [f"There is no drawing data: {reason}."], "notes"
-    report = known.report | {key: [*known.report.get(key, []), *told]}
+        sentence, key = f"There is no drawing data: {reason}.", "notes"
+    report = known.report | {key: [*known.report.get(key, []), sentence]}
     return replace(known, design=untyped(design), report=report)
 
 
@@ -65,15 +65,15 @@ def drawing_data(scene: Scene, design: DriveDesign) -> DrawingData:
         MeshName(stage=k, title=f"stage {k}") for k in range(1, len(pairs) + 1)
     )
     turned = hands(
-        [own.pinion_hand for own in meshed.stage] or [None] * len(pairs), drivers(meshed)
+        [stage.pinion_hand for stage in meshed.stage] or [None] * len(pairs), drivers(meshed)
     )
     several = len(design.stages) > 1
     gears, meshes, unverified = list[GearData](), list[MeshData](), list[str]()
     mates = dict[str, list[str]]()
     for k, (pair, name) in enumerate(zip(pairs, names, strict=True)):
         _check_whole(pair, name)
-        own = meshed.stage_tables[k]
-        tables = gear_tables(own, meshed.gears, meshed.material, k, materials[k])
+        stage = meshed.stage_tables[k]
+        tables = gear_tables(stage, meshed.gears, meshed.material, k, materials[k])
         ends = [
             tuple(replace(gear, thickness_allowance=off) for off in asked.thickness(gear))
             for gear in pair.gears
@@ -81,22 +81,22 @@ def drawing_data(scene: Scene, design: DriveDesign) -> DrawingData:
         meshes.append(_mesh(pair, name, ends, asked))
         for member, gear in enumerate(pair.gears):
             called = f"{name.gears[member]} {name.stage}" if several else name.gears[member]
-            called = f"wheel {name.stage - 1}" if own.idler and member == 0 else called
+            called = f"wheel {name.stage - 1}" if stage.idler and member == 0 else called
             mates.setdefault(called, []).append(f"z {abs(pair.gears[1 - member].teeth):g}")
-            if member == 0 and (own.idler or name.pinion != name.gears[0]):
+            if member == 0 and (stage.idler or name.pinion != name.gears[0]):
                 continue  # it is the wheel of the mesh before
             grade, edition = _accuracy(scene, tables[member], member)
-            data = _gear(gear, ends[member], asked, grade, edition)
-            gears.append(
-                data(
-                    stage=name.stage,
-                    gear=called,
-                    mate="",
-                    hand=hand_of(gear, member, turned[k]),
-                    material=_material(design, k + 1, MEMBERS[member], tables[member]),
-                    **_relief(scene, design, MEMBERS[member]),
-                )
-            )
+            words = {
+                "stage": name.stage,
+                "gear": called,
+                "hand": hand_of(gear, member, turned[k]),
+                "tolerances": f"ISO 1328-1:{edition}, {grade}",
+                "material": _material(design, k + 1, MEMBERS[member], tables[member]),
+            }
+            words |= _relief(scene, design, MEMBERS[member])
+            amounts = flank_tolerances(gear, grade, edition).items()
+            words |= {f"{item}_mm": amount for item, amount in amounts}
+            gears.append(_gear(gear, ends[member], asked, words))
             unverified += _unverified(called, pair, member, grade, edition)
     return DrawingData(
         gears=tuple(replace(gear, mate=" and ".join(mates[gear.gear])) for gear in gears),
@@ -124,8 +124,8 @@ def _accuracy(scene: Scene, table: GearTable, member: int) -> tuple[int, str]:
     return (iso.accuracy_grade[member] if iso and iso.accuracy_grade else USUAL_GRADE), edition
 
 
-def _gear(gear: Gear, ends: Ends, asked: DrawingTable, grade: int, edition: str) -> Any:
-    """The data of a gear, to be completed by names."""
+def _gear(gear: Gear, ends: Ends, asked: DrawingTable, words: dict[str, Any]) -> GearData:
+    """The data of a gear; words: names and tolerances by their keys."""
     rack, size = gear.rack, {}
     for name, value in (
         ("reference", gear.reference_diameter),
@@ -139,12 +139,10 @@ def _gear(gear: Gear, ends: Ends, asked: DrawingTable, grade: int, edition: str)
         size[f"{name}_diameter_mm"] = abs(float(value))
     bare = replace(gear, thickness_allowance=0.0)
     wide, height = map(float, chord(bare))
-    amounts = flank_tolerances(gear, grade, edition).items()
-    own = "own A_sne, tolerance " * bool(gear.thickness_allowance)
+    by = "own A_sne, tolerance " * bool(gear.thickness_allowance) + asked.fit
     chamfered = abs(float(gear.active_tip_diameter)) if rack.tip_chamfer else None
-    tool = f"cutter z {gear.cutter.teeth:g}" if gear.cutter else f"{rack.dedendum:g}"
-    tool = tool if gear.cutter else f"{tool}/{rack.tip_radius:g}"
-    known = dict(
+    return GearData(
+        mate="",
         teeth=abs(round(float(gear.teeth))),
         normal_module_mm=float(gear.normal_module),
         pressure_angle_deg=math.degrees(rack.pressure_angle),
@@ -153,19 +151,25 @@ def _gear(gear: Gear, ends: Ends, asked: DrawingTable, grade: int, edition: str)
         upper_generating_shift=float(ends[0].generating_shift),
         lower_generating_shift=float(ends[1].generating_shift),
         face_width_mm=float(gear.width),
-        tool=tool,
+        tool=_tool(gear),
         tip_form_diameter_mm=chamfered,
         tooth_thickness_mm=float(normal_thickness(bare, gear.reference_diameter)),
-        allowances=own + asked.fit,
+        allowances=by,
         upper_allowance_mm=float(ends[0].thickness_allowance),
         lower_allowance_mm=float(ends[1].thickness_allowance),
         chord_mm=wide,
         chord_height_mm=height,
-        tolerances=f"ISO 1328-1:{edition}, {grade}",
-        **(size | _measures(bare, ends, asked)),
-        **{f"{name}_mm": value for name, value in amounts},
+        **(words | size | _measures(bare, ends, asked)),
     )
-    return lambda **names: GearData(**known, **names)
+
+
+def _tool(gear: Gear) -> str:
+    """The tool of a gear: addendum and tip radius, protuberance, teeth of a cutter."""
+    rack, cutter = gear.rack, gear.cutter
+    if cutter is not None:
+        return f"{cutter.addendum:g}/{cutter.tip_radius:g}, cutter z {cutter.teeth:g}"
+    ends = f", pr {rack.protuberance:g}" if rack.protuberance else ""
+    return f"{rack.dedendum:g}/{rack.tip_radius:g}{ends}"
 
 
 def _as_cut(gear: Gear) -> Gear:
@@ -208,13 +212,13 @@ def _mesh(pair: GearPair, name: MeshName, ends: list[Ends], asked: DrawingTable)
     """Centre distance and backlash of a mesh: of the thickest teeth nearest, the thinnest apart."""
     distance = abs(float(pair.centre_distance))
     low, high = asked.distance(distance)
-    made = [
+    ends_of_play = [
         GearPair(ends[0][k], ends[1][k], signed(distance + off, pair.wheel.teeth))
         for k in (0, 1)
         for off in (low, high)
     ]
-    backlash = [float(circumferential_backlash(one)) for one in made]
-    normal = [float(normal_backlash(one)) for one in made]
+    backlash = [float(circumferential_backlash(each)) for each in ends_of_play]
+    normal = [float(normal_backlash(each)) for each in ends_of_play]
     return MeshData(
         mesh=name.title,
         centre_distance_mm=distance,
@@ -240,8 +244,9 @@ def _material(design: DriveDesign, mesh: int, member: str, table: GearTable) -> 
 def _relief(scene: Scene, design: DriveDesign, member: str) -> dict[str, float]:
     """Tip relief of a gear: of a pair that is designed with it, else that of a rating."""
     if design.relief is not None:
-        own = getattr(design.relief, member)
-        return {"tip_relief_mm": own.amount_mm, "relief_diameter_mm": own.start_diameter_mm}
+        flank = getattr(design.relief, member)
+        start = flank.start_diameter_mm
+        return {"tip_relief_mm": flank.amount_mm, "relief_diameter_mm": start}
     if design.flank is not None and any(design.flank.relief_mm):
         k = MEMBERS.index(member)
         where = design.flank.relief_diameters_mm[k]
@@ -261,17 +266,18 @@ def _unverified(
         yield BEYOND.format(gear=called, sizes=" and ".join(sizes))
 
 
-def _assumed(scene: Scene) -> str:
+def _assumed(asked: DrawingTable) -> str:
     """By what the drawings' data are, and what of it the file does not say."""
-    asked = scene.drawing
-    assert asked is not None
+    grade = f"grade {USUAL_GRADE} unless gear or rating has one"
     words = {
         "allowance": f"tooth thickness by {asked.fit}",
         "centre_distance": f"centre distance {asked.field}",
+        "accuracy_grade": grade if asked.accuracy_grade is None else "one grade",
+        "balls": f"balls of {BALL:g} m_n" if asked.balls is None else "balls of the file",
     }
     usual = {key: " (default)" * (key not in asked.model_fields_set) for key in words}
-    said = [f"{text}{usual[key]}" for key, text in words.items()]
     return (
-        f"Drawing data: {', '.join(said)}; backlash is that of teeth and centre distance alone, "
-        "without runout, parallelism, temperature and bearings."
+        f"Drawing data: {', '.join(f'{text}{usual[key]}' for key, text in words.items())}; "
+        "backlash is that of teeth and centre distance alone, without runout, parallelism, "
+        "temperature and bearings."
     )

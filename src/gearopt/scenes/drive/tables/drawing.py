@@ -120,8 +120,8 @@ class DrawingTable(Table):
             upper, lower = thickness_allowances(size, *self.allowance)
         else:
             lower, upper = (end.value for end in self.allowance)
-        own = float(gear.thickness_allowance)
-        return (own, own + lower - upper) if own else (upper, lower)
+        given = float(gear.thickness_allowance)
+        return (given, given + lower - upper) if given else (upper, lower)
 
     def distance(self, distance: float) -> tuple[float, float]:
         """Lower and upper allowance [mm] of a centre distance [mm]."""
