@@ -16,7 +16,9 @@ solved in three lines ([How to start](start.md#from-python)); a problem of your 
 [a page](own_problem.md); the words are explained in [The contract](contract.md).
 """
 GROUPS = {  # heading: names, in reading order
-    "From a file to an answer": ("solve", "rate", "explain", "pareto", "compare", "load"),
+    "From a file to an answer": (
+        *("solve", "rate", "explain", "pareto", "compare", "load", "export"),
+    ),
     "Answers": ("Result", "Explanation", "Front", "Comparison"),
     "Problems of your own": (
         "Problem",

@@ -6,7 +6,7 @@ A name is imported when it is first asked for: the command must answer Ctrl-C be
 __version__ = "0.1.0"
 TYPE_CHECKING = False  # as in typing, which takes its time too
 if TYPE_CHECKING:
-    from gearopt.api import compare, explain, load, pareto, rate, solve
+    from gearopt.api import compare, explain, export, load, pareto, rate, solve
     from gearopt.errors import CertificateError, GearoptError, SceneError, SolveError
     from gearopt.optimise.comparing.comparison import Comparison
     from gearopt.optimise.conic.problem import Conic
@@ -38,6 +38,7 @@ __all__ = [
     "compare",
     "evaluate",
     "explain",
+    "export",
     "load",
     "pareto",
     "rate",

@@ -182,6 +182,35 @@ def _rate_found(kept: "Front | Result", design: Mapping[str, Any], options: Any)
 
 
 @in_turn
+def export(what: File | Result, format: str, changes: Changes = None) -> bytes:
+    """Return the bytes of a file for other programs: the answer to a problem file, or a Result.
+
+    format: dxf (drive, pair, strain_wave) or csv (these and dynamics). changes: of a file, as in
+    `load`. Gears that are all given are rated first, others found. SceneError for a wrong file,
+    SolveError where the answer has no such file, or its kind has no such format.
+    """
+    from gearopt.report.kinds import pages_of
+
+    if isinstance(what, Result) and changes is not None:
+        raise SolveError("changes are those of a problem file; a result is written as it is")
+    scene = None if isinstance(what, Result) else load(what, changes)
+    name = what.scene if isinstance(what, Result) else kind_of(scene)  # type: ignore[arg-type]
+    formats = pages_of(name).exports
+    if format not in formats:
+        of = f'kind = "{name}"' if name else "a Problem"
+        known = f"; it is as {', '.join(formats)}" if formats else ""
+        raise SolveError(f"{of} is not exported as {format}{known}")
+    given = getattr(scene, "given", False) and not getattr(scene, "to_size", True)
+    answer = what if isinstance(what, Result) else (rate if given else solve)(what, changes)
+    if not answer.design:
+        raise SolveError(f"there is no design to export ({answer.status}: {answer.message})")
+    try:
+        return formats[format](answer)
+    except (ValueError, ImportError) as why:
+        raise SolveError(f"{format}: {why}") from None
+
+
+@in_turn
 def explain(
     what: File | Problem | Conic,
     changes: Changes = None,

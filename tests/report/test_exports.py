@@ -18,7 +18,6 @@ from gearopt.physics.geometry.tooth import transverse_thickness
 from gearopt.report.drawing.dxf import dxf
 from gearopt.report.drawing.gear_sections import outline, sections
 from gearopt.report.drawing.sheet import Place, Sheet, Window
-from gearopt.report.kinds import pages_of
 from gearopt.report.measures import METRIC
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
@@ -114,7 +113,7 @@ def box():
 def read(result):
     """The DXF of a result as ezdxf reads it, without a fault."""
     ezdxf = pytest.importorskip("ezdxf")
-    made = pages_of(result.scene).exports["dxf"](result)
+    made = gearopt.export(result, "dxf")
     document = ezdxf.read(io.StringIO(made.decode()))
     assert not document.audit().errors
     return document
@@ -198,21 +197,21 @@ def test_drawings_of_gears_are_recorded_to_scale(box):
 
 
 def test_places_of_shafts_are_exported_as_csv(box):
-    text = pages_of("drive").exports["csv"](box).decode()
+    text = gearopt.export(box, "csv").decode()
     assert text.startswith("places of shafts\r\n,shaft 1,shaft 2,shaft 3\r\n")
 
 
 @pytest.mark.slow
 def test_drawing_data_are_exported_as_csv():
     rated = gearopt.rate(PROBLEMS / "wind_planetary_stage.toml", {"drawing": {}})
-    text = pages_of("drive").exports["csv"](rated).decode()
+    text = gearopt.export(rated, "csv").decode()
     assert text.startswith("drawing data\r\n,sun,planet,ring\r\n") and "\r\nbacklash\r\n" in text
 
 
 @pytest.mark.slow
 def test_flanks_and_cutter_of_a_strain_wave(solved):
     result = solved("strain_wave_base")
-    text = pages_of("strain_wave").exports["csv"](result).decode()
+    text = gearopt.export(result, "csv").decode()
     assert "points of the flexspline's flank" in text and "points of the circular" in text
     document = read(result)
     tooth = document.modelspace().query("LWPOLYLINE")[0].get_points("xy")
@@ -229,11 +228,11 @@ def test_the_command_writes_a_file_and_says_what_it_cannot(here, tmp_path, box):
     assert here("export", str(kept), "--csv", "-o", str(out)).returncode == 0
     assert out.read_text("utf-8").startswith("places of shafts")
     for command, said in (
-        (("export", str(kept)), "one format: add one of --dxf or --csv"),
-        (("export", str(kept), "--csv", "--dxf"), "one format"),
+        (("export", str(kept)), "name one format"),
+        (("export", str(kept), "--csv", "--dxf"), "name one format"),
         (("export", str(kept), "--csv", "-o", str(tmp_path)), "is a folder"),
         (("export", str(kept), "--csv", "-o", str(tmp_path / "a.toml")), "is a problem file"),
-        (("export", str(PROBLEMS / "seven_points.toml"), "--dxf"), "no such file is made of"),
+        (("export", str(PROBLEMS / "seven_points.toml"), "--dxf"), "is not exported as dxf"),
     ):
         wrong = here(*command)
         assert (wrong.returncode, said in wrong.stderr) == (2, True), wrong.stderr

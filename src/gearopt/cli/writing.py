@@ -51,22 +51,25 @@ BESIDE = ".gearopt-"  # with a process number: files that are being written
 PROBLEM, TABLE = ".toml", ".csv"  # endings: of files that are never written, and of tables
 
 
-def check_html(
-    path: Path | None, *given: Path, option: str = "--html", example: str = "page.html"
-) -> None:
-    """Raise GearoptError where a page cannot be written, before long work begins.
+def check_html(path: Path | None, *given: Path) -> None:
+    """Raise GearoptError where a page cannot be written, as `check_output` does."""
+    check_output(path, "--html", "page.html", *given)
 
-    given: the files that the run reads. A link counts as the file that it leads to. option,
-    example: of another file.
+
+def check_output(path: Path | None, option: str, sample: str, *given: Path) -> None:
+    """Raise GearoptError where a file cannot be written, before long work begins.
+
+    sample: a name for it. given: the files that the run reads. A link counts as the file that it
+    leads to.
     """
     if path is None:
         return
     if path.is_dir():
-        raise GearoptError(f"{option} {path}: is a folder; name a file, such as {path / example}")
+        raise GearoptError(f"{option} {path}: is a folder; name a file, such as {path / sample}")
     folder = _place(path).parent
     if not folder.is_dir():
         raise GearoptError(f"{option} {path}: there is no folder {folder}")
-    plain = path.with_name(f"{path.stem}-{example}")
+    plain = path.with_name(f"{path.stem}-{sample}")
     _spare(f"{option} {path}", path, given, f"name another file, such as {plain}")
     if _ordinary(path) and not (os.access(folder, os.W_OK) and _writable(path)):
         raise GearoptError(f"{option} {path}: nothing may be written there")
