@@ -74,7 +74,7 @@ def thicknesses(curve, radius):
     return radius * np.diff(crossings)
 
 
-FAST = ("undercut", "helical", "ring by a cutter")
+FAST = ("undercut", "ring by a cutter")
 ALL = [name if name in FAST else pytest.param(name, marks=pytest.mark.slow) for name in GEARS]
 
 
