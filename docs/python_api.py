@@ -17,7 +17,7 @@ solved in three lines ([How to start](start.md#from-python)); a problem of your 
 """
 GROUPS = {  # heading: names, in reading order
     "From a file to an answer": (
-        *("solve", "rate", "explain", "pareto", "compare", "load", "export"),
+        *("solve", "rate", "explain", "pareto", "compare", "load", "export", "read_rexs"),
     ),
     "Answers": ("Result", "Explanation", "Front", "Comparison"),
     "Problems of your own": (

@@ -21,7 +21,7 @@ OUTSIDE = {  # at module level; what is imported inside functions is free
     "physics": {"numpy"},
     "optimise": {"numpy"},
     "formulations": {"numpy"},
-    "scenes": {"pydantic", "pydantic_core"},
+    "scenes": {"pydantic", "pydantic_core", "defusedxml"},
     "report": {"numpy", "rich"},  # cli imports it inside functions
     "bench": {"numpy"},
 }

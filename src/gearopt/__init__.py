@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from gearopt.optimise.result import Budget, Event, Outcome, Result
     from gearopt.optimise.solve import evaluate
     from gearopt.optimise.terms import Param, Repeat, Terms, Var
+    from gearopt.scenes.drive.rexs.reading import read_rexs
 
 __all__ = [
     "Budget",
@@ -42,6 +43,7 @@ __all__ = [
     "load",
     "pareto",
     "rate",
+    "read_rexs",
     "solve",
 ]
 
@@ -56,6 +58,7 @@ _PLACES = {  # modules that hold names of `__all__`; `api` holds the others
     "optimise.result": ("Budget", "Event", "Outcome", "Result"),
     "optimise.solve": ("evaluate",),
     "optimise.terms": ("Param", "Repeat", "Terms", "Var"),
+    "scenes.drive.rexs.reading": ("read_rexs",),
 }
 
 

@@ -23,6 +23,7 @@ ORDER = (
     "check",
     "compare",
     "report",
+    "import_",
     "export",
     "materials",
     "schema",

@@ -1,4 +1,4 @@
-"""`export`: gears for other programs."""
+"""`import` and `export`: gears from and for other programs."""
 
 from pathlib import Path
 from typing import Annotated
@@ -7,10 +7,28 @@ import typer
 
 import gearopt
 from gearopt.cli.app import MORE_OF_FILES, app, print_whole
-from gearopt.cli.names import problem_files
+from gearopt.cli.names import problem_files, result_files
 from gearopt.cli.reporting import kept_design
 from gearopt.cli.writing import Written, check_output, write
 from gearopt.errors import GearoptError
+
+
+@app.command("import", rich_help_panel=MORE_OF_FILES)
+def import_(
+    file: Annotated[
+        Path,
+        typer.Argument(
+            help="A REXS file (.rexs, .rexsj, .rexsz), version 1.0 to 2.0.0.",
+            show_default=False,
+            autocompletion=result_files,
+        ),
+    ],
+) -> None:
+    """Print gears of a REXS file as a problem file: `gearopt import box.rexs > box.toml`.
+
+    What has no place in it, and what it needs besides, stands in comments.
+    """
+    print_whole(gearopt.read_rexs(file), end="")
 
 
 @app.command(rich_help_panel=MORE_OF_FILES)
@@ -35,6 +53,9 @@ def export(
             "edge, motions over speed.",
         ),
     ] = False,
+    rexs: Annotated[
+        bool, typer.Option("--rexs", help="As REXS 2.0.0 (XML), which other gear programs read.")
+    ] = False,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="The file to write; by default printed.")
     ] = None,
@@ -43,9 +64,10 @@ def export(
 
     Gears that are all given are rated first, others found.
     """
-    formats = [name for name, asked in {"dxf": dxf, "csv": csv}.items() if asked]
+    asked = {"dxf": dxf, "csv": csv, "rexs": rexs}
+    formats = [name for name, chosen in asked.items() if chosen]
     if len(formats) != 1:
-        raise GearoptError(f"export {file}: name one format, as in --dxf")
+        raise GearoptError(f"export {file}: name one format: --{', --'.join(asked)}")
     check_output(output, "-o", f"gears.{formats[0]}", file)
     what = kept_design(file, None) if file.suffix == ".json" else file
     assert not isinstance(what, gearopt.Front)  # it needs a design, which `kept_design` says

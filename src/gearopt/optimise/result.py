@@ -242,6 +242,10 @@ class Result:
         """Return its page, one self-contained HTML text; units: "metric" or "inch"."""
         return str(shown("whole_page", self, units))
 
+    def to_rexs(self) -> bytes:
+        """Return the gears of a drive as a REXS file, XML of version 2.0.0, for other programs."""
+        return bytes(import_module(API).export(self, "rexs"))
+
     to_dict, to_json = as_dict, as_json
 
     @classmethod
@@ -270,7 +274,10 @@ class Result:
         return cls.from_dict(loads(text))
 
 
-STAGES = "gearopt.stages"  # what is made of the gears of an answer, likewise by name
+API, STAGES = (
+    "gearopt.api",
+    "gearopt.stages",
+)  # what is made of the gears of an answer, likewise by name
 SHOWN = "gearopt.report.shown"  # who shows an answer, by name: this room imports no report
 
 

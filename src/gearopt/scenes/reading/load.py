@@ -40,6 +40,7 @@ FORMATS = {  # beginnings of files of other formats
 }
 LIBRARIES = ("site-packages", "importlib", "<")  # in names of files
 NOT_TOML = "Write the gears into a file in TOML: `gearopt new drive` prints one to start from"
+OF_REXS = "Make one of it: `gearopt import FILE > drive.toml`"
 TABLES = "<tables>"  # from Python, in messages
 DEEPEST_KEY = r"(?:[\w-]\s*\.\s*){6000}"  # tomllib's time grows with the square: 1 s at 5000
 
@@ -297,7 +298,8 @@ def _parse(data: bytes, file: str) -> dict[str, Any]:
     if form := next(
         (name for begin, name in FORMATS.items() if re.match(begin, text[:2000])), None
     ):
-        raise SceneError(file, "", "", f"is {form}, not a problem file", NOT_TOML)
+        remedy = OF_REXS if "REXS" in form else NOT_TOML
+        raise SceneError(file, "", "", f"is {form}, not a problem file", remedy)
     if re.search(DEEPEST_KEY, text):
         raise _too_deep(file)
     try:

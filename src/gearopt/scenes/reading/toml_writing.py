@@ -1,6 +1,7 @@
 """Values and keys as TOML writes them, for messages and for remedies a machine can apply."""
 
 import re
+from collections.abc import Callable, Mapping
 from decimal import Context, Decimal
 from fractions import Fraction
 from typing import Any
@@ -62,3 +63,28 @@ def _escape(character: str) -> str:
 
 def _key(name: str) -> str:
     return name if _BARE.fullmatch(name) else toml_text(name)
+
+
+def toml_tables(
+    tables: Mapping[str, Any], said: Callable[[Any], tuple[Any, str]], head: str = ""
+) -> str:
+    """The text of a file, or of its tables below a head: keys first, then tables in their order.
+
+    said: a value, and a comment with which its line stands as one, "" for none.
+    """
+    lines, below = [], []
+    for key, value in tables.items():
+        name = f"{head}.{_key(key)}" if head else _key(key)
+        rows = value if isinstance(value, list) else [value]
+        if rows and all(isinstance(row, dict) for row in rows):
+            double = isinstance(value, list)
+            for row in rows:
+                text = toml_tables(row, said, name)
+                title = f"[[{name}]]" if double else f"[{name}]"
+                plain = not text.startswith("\n[") if text else double
+                below.append(f"\n{title}\n{text}" if plain else text)
+        else:
+            content, comment = said(value)
+            line = f"{_key(key)} = {toml_text(content)}"
+            lines.append(f"# {line} {comment}\n" if comment else f"{line}\n")
+    return "".join((*lines, *below))

@@ -47,6 +47,7 @@ from gearopt.report.words import (
     series_of,
     violation_words,
 )
+from gearopt.scenes.drive.rexs.writing import rexs
 
 DRAWN = ("layout", "bearings", "clearances", "motor")  # tables of a layout
 WALL_TOLERANCE = 1e-6  # of the box: a gear so near to a wall's clearance is at it
@@ -453,6 +454,7 @@ PAGES = Pages(
     exports={
         "dxf": drawn(layout_views.section, train_views.section, also=gears),
         "csv": listed(places, drawing_tables.section),
+        "rexs": rexs,
     },
     pages_of_given=PAGES_OF_GIVEN,
 )

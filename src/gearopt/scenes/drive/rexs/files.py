@@ -1,0 +1,209 @@
+"""REXS files: XML, JSON or either in a zip archive, read into a `Model`."""
+
+import io
+import json
+import re
+import xml.etree.ElementTree as ET
+import zipfile
+import zlib
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from defusedxml import DefusedXmlException
+from defusedxml.ElementTree import fromstring
+
+from gearopt.scenes.drive.rexs.model import VERSION, Attribute, Component, Model, Relation, wrong
+from gearopt.scenes.reading.file_bytes import first_bytes
+
+LARGEST = 20_000_000  # bytes of a file, also of one in an archive
+KNOWN = re.compile(r"1\.[0-7]|2\.0(\.0)?")
+ENDINGS = (".rexs", ".rexsj", ".xml", ".json")
+AGAIN = "Write it again with the program that it comes from"
+ROLES = {  # roles that a relation must have, of those that are read
+    "stage": ("stage", "gear_1", "gear_2"),
+    "stage_gear_data": ("stage", "gear", "stage_gear_data"),
+    "assembly": ("assembly", "part"),
+    "reference": ("origin", "referenced"),
+    "side": ("assembly", "inner_part", "outer_part"),
+    "flank": ("gear",),
+}
+Raw = dict[str, Any]  # an element: its attributes and "children", as `_plain` makes them
+
+
+def read_model(path: str | Path) -> Model:
+    """The model of a REXS file; SceneError, without its name, says what is wrong with it."""
+    try:
+        data = first_bytes(path, LARGEST)
+    except (OSError, ValueError) as refused:
+        reason = getattr(refused, "strerror", None) or str(refused)
+        raise wrong("", None, f"cannot be read ({reason})", "Check the name") from None
+    return model_of(data)
+
+
+def model_of(data: bytes) -> Model:
+    """The model in the bytes of a file."""
+    if data[:4] == b"PK\x03\x04":
+        data = _unpacked(data)
+    if len(data) > LARGEST:
+        raise wrong("", None, f"is larger than {LARGEST:,} bytes", "Export fewer results")
+    start = data[:200].lstrip(b"\xef\xbb\xbf \t\r\n")
+    if start[:1] == b"{":
+        return _checked(_of_json(data))
+    if start[:1] == b"<" or start[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return _checked(_of_xml(data))
+    raise wrong("", None, "is neither XML nor JSON nor a zip archive", "Name a file of REXS")
+
+
+def _unpacked(data: bytes) -> bytes:
+    """The REXS file of an archive."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            names = [n for n in archive.namelist() if n.lower().endswith(ENDINGS)]
+            if len(names) != 1:
+                listed = f"{len(names)} REXS files" if names else "no REXS file"
+                raise wrong("", None, f"is an archive with {listed}", "Put one into it")
+            with archive.open(names[0]) as file:
+                return file.read(LARGEST + 1)
+    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as odd:
+        raise wrong("", None, f"is a broken archive ({odd})", AGAIN) from None
+
+
+def _of_xml(data: bytes) -> Raw:
+    try:
+        root = fromstring(data, forbid_dtd=True)
+    except DefusedXmlException:
+        rule = "declares a document type or entities, which no REXS file needs"
+        raise wrong("", None, rule, "Remove the lines <!DOCTYPE ...>") from None
+    except ET.ParseError as odd:
+        raise wrong("", None, f"is not well-formed XML ({odd})", AGAIN) from None
+    except (ValueError, LookupError) as odd:
+        raise wrong(
+            "", None, f"is XML of an unknown encoding ({odd})", "Save it as UTF-8"
+        ) from None
+    if _tag(root) != "model":
+        raise wrong("", None, f"is XML, but no REXS: it begins with <{_tag(root)}>", AGAIN)
+    spectra = [_spectrum_of_xml(e) for e in root if _tag(e) == "load_spectrum"]
+    inside = {"relations": "relation", "components": "component"}
+    lists = {
+        group: [_plain(e) for part in root if _tag(part) == group for e in part if _tag(e) == name]
+        for group, name in inside.items()
+    }
+    return {**root.attrib, **lists, "load_spectrum": spectra}
+
+
+def _spectrum_of_xml(spectrum: ET.Element) -> Raw:
+    cases = [e for e in spectrum if _tag(e) == "load_case"]
+    return {"load_cases": [{**e.attrib, "components": [_plain(c) for c in e]} for e in cases]}
+
+
+def _plain(element: ET.Element) -> Raw:
+    """A relation or component as JSON has it; an attribute has its text or list as "value"."""
+    raw: Raw = dict(element.attrib)
+    raw["refs"] = [dict(e.attrib) for e in element if _tag(e) == "ref"]
+    raw["attributes"] = [
+        {
+            **e.attrib,
+            "value": [c.text or "" for c in e.iter() if _tag(c) == "c"] if len(e) else e.text,
+        }
+        for e in element
+        if _tag(e) == "attribute"
+    ]
+    return raw
+
+
+def _tag(element: ET.Element) -> str:
+    return str(element.tag).rpartition("}")[2]
+
+
+def _of_json(data: bytes) -> Raw:
+    try:
+        raw = json.loads(data.decode("utf-8-sig"), parse_float=str)
+    except RecursionError:
+        raise wrong("", None, "is nested too deeply", AGAIN) from None
+    except ValueError as odd:
+        raise wrong("", None, f"is not valid JSON ({odd})", AGAIN) from None
+    model = raw.get("model")
+    if not isinstance(model, dict):
+        raise wrong("", None, "is JSON, but no REXS: it has no object `model`", AGAIN)
+    spectra = model.get("load_spectrum") or []
+    return model | {"load_spectrum": spectra if isinstance(spectra, list) else [spectra]}
+
+
+def _listed(raw: Any, key: str, place: str) -> list[Raw]:
+    """Objects of a list that stands at a key, none where it is absent."""
+    rows = raw.get(key) or []
+    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+        raise wrong(f"{place}{key}", None, "is no list of objects", AGAIN)
+    return rows
+
+
+def _checked(raw: Raw) -> Model:
+    """The model of plain data, whose ids and relations fit."""
+    version = str(raw.get("version", "")).strip()
+    if not KNOWN.fullmatch(version):
+        rule = "is no known version: 1.0 to 1.7 and 2.0.0 are read" if version else "is missing"
+        raise wrong("model.version", version or None, rule, f"Export it as REXS {VERSION}")
+    components = _components(_listed(raw, "components", ""), "")
+    if not components:
+        raise wrong("components", None, "is empty: there is no gear", AGAIN)
+    relations = [_relation(row, components) for row in _listed(raw, "relations", "")]
+    relations.sort(key=lambda relation: relation.order)
+    spectra = _listed(raw, "load_spectrum", "")
+    if len(spectra) > 1:
+        rule = f"stands {len(spectra)} times, and a drive has one"
+        raise wrong("load_spectrum", None, rule, "Leave the one that counts")
+    cases = []
+    for k, row in enumerate(_listed(spectra[0], "load_cases", "") if spectra else [], 1):
+        case = _components(_listed(row, "components", f"load case {k}, "), f"load case {k}, ")
+        for number in case.keys() - components.keys():
+            raise wrong(str(case[number]), None, "is not among the components", AGAIN)
+        cases.append(case)
+    source = " ".join(str(raw.get(k, "")) for k in ("applicationId", "applicationVersion"))
+    return Model(version, source.strip(), components, relations, cases)
+
+
+def _number(value: Any, place: str) -> int:
+    try:
+        return int(str(value))
+    except ValueError:
+        raise wrong(place, value, "is no whole number", AGAIN) from None
+
+
+def _components(rows: Iterable[Raw], place: str) -> dict[int, Component]:
+    components: dict[int, Component] = {}
+    for row in rows:
+        number = _number(row.get("id"), f"{place}component.id")
+        kind = str(row.get("type", ""))
+        if number in components:
+            raise wrong(f"{place}component {number}", None, "stands twice", "Give each its own id")
+        attributes = {}
+        for entry in _listed(row, "attributes", f"{place}component {number} ({kind})."):
+            name = str(entry.get("id", ""))
+            if name in attributes:
+                at = f"{place}component {number} ({kind}).{name}"
+                raise wrong(at, None, "stands twice", "Remove one")
+            values = [v for k, v in entry.items() if k not in ("id", "unit")]
+            value = "" if not values or values[0] is None else values[0]
+            attributes[name] = Attribute(value, str(entry.get("unit") or ""))
+        called = str(row.get("name") or "")
+        components[number] = Component(number, kind, called, attributes, place)
+    return components
+
+
+def _relation(row: Raw, components: Mapping[int, Component]) -> Relation:
+    kind, number = str(row.get("type", "")), _number(row.get("id"), "relation.id")
+    at = f"relation {number} ({kind})"
+    refs = []
+    for ref in _listed(row, "refs", f"{at}."):
+        of = _number(ref.get("id"), f"{at}.ref.id")
+        if of not in components:
+            raise wrong(at, of, "names a component that is not there", AGAIN)
+        refs.append((str(ref.get("role", "")), of))
+    roles = Counter(role for role, _ in refs)
+    for role in ROLES.get(kind, ()):
+        if roles[role] != 1:
+            rule = f"has the role {role} {roles[role]} times" if roles[role] else f"lacks {role}"
+            raise wrong(at, None, rule, "Give it each role once")
+    return Relation(kind, tuple(refs), _number(row.get("order") or 0, f"{at}.order"), number)
