@@ -14,7 +14,7 @@ INSIDE = {
     "optimise": {"optimise", "errors"},
     "formulations": {"physics", "optimise", "formulations", "errors"},
     "scenes": {"formulations", "physics", "optimise", "scenes", "units", "errors"},
-    "report": {"physics", "formulations", "optimise", "scenes", "report", "units"},
+    "report": {"physics", "formulations", "optimise", "scenes", "report", "units", "errors"},
     "bench": {"physics", "formulations", "optimise", "scenes", "bench", "errors", "api"},
 }
 OUTSIDE = {  # at module level; what is imported inside functions is free

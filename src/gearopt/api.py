@@ -377,7 +377,8 @@ def compare(
 def _of_comparison(names: dict[str, Any]) -> dict[str, Any]:
     """Return the names of a file as a comparison has them: what is changed, not the tables."""
     kept = {k: v for k, v in names.items() if k not in ("asked", "options", "report")}
-    return kept | {"changes": names.get("options", {}).get("changes", {})}
+    head = (names.get("asked") or {}).get("report") or {}
+    return kept | {"changes": names.get("options", {}).get("changes", {}), "head": head}
 
 
 def _fronts(

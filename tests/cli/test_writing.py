@@ -11,7 +11,7 @@ from gearopt.api import solve
 from gearopt.cli.answering import compare
 from gearopt.cli.answering import solve as solve_command
 from gearopt.cli.reporting import checked, report
-from gearopt.cli.writing import Written, check_csv, check_html, write
+from gearopt.cli.writing import Written, check_csv, check_page, write
 from gearopt.errors import GearoptError
 
 ELEVATOR = Path(__file__).parents[2] / "problems" / "elevator.toml"
@@ -78,31 +78,31 @@ def test_tables_never_replace_what_is_read(room, folder):
     with pytest.raises(GearoptError, match="would replace plain, which is read"):
         solve_command(Path("plain"), csv=folder)
     with pytest.raises(GearoptError, match="would replace"):
-        checked(None, folder, "metric", room / "tables" / "stages.csv")
-    assert checked(None, folder, "metric", Path("mine.toml")).csv == folder
+        checked(None, None, folder, "metric", room / "tables" / "stages.csv")
+    assert checked(None, None, folder, "metric", Path("mine.toml")).csv == folder
 
 
 def test_tables_spare_a_problem_file_behind_a_link(room):
     (room / "tables" / "limits.csv").symlink_to(room / "other.toml")
     with pytest.raises(GearoptError, match="problem file"):
-        check_csv(Path("tables"), None, Path("mine.toml"))
+        check_csv(Path("tables"), (None, None), Path("mine.toml"))
 
 
 def test_a_page_and_a_table_are_two_files(room):
     with pytest.raises(GearoptError, match="--csv writes its tables there"):
-        check_csv(Path("tables"), Path("tables/../tables/page.csv"))
-    check_csv(Path("tables"), Path("tables/page.html"))
+        check_csv(Path("tables"), (Path("tables/../tables/page.csv"), None))
+    check_csv(Path("tables"), (Path("tables/page.html"), None))
 
 
 def test_a_file_is_written_whole_or_not_at_all(room):
     page = room / "page.html"
-    write(Written("--html", page, "old\n"))
+    write(Written("--html", page, b"old\n"))
     page.chmod(0o604)
-    for text, kind in (("new \ud800", UnicodeEncodeError), (7, TypeError)):
-        with pytest.raises(kind):
-            write(Written("--html", page, text))
+    for data in ("text", 7):
+        with pytest.raises(TypeError):
+            write(Written("--html", page, data))
         assert page.read_text() == "old\n"
-    write(Written("--html", page, "new\n"))
+    write(Written("--html", page, b"new\n"))
     assert page.read_text() == "new\n" and stat.S_IMODE(page.stat().st_mode) == 0o604
     assert not [path for path in room.iterdir() if path.name.startswith(".")]
 
@@ -121,7 +121,7 @@ def test_tables_are_written_all_or_none(room, monkeypatch):
     said = "--csv b.csv: No space left on device; nothing was written"
     with monkeypatch.context() as patched, pytest.raises(GearoptError, match=said):
         patched.setattr(Path, "open", full)
-        write(*(Written("--csv", path, "new") for path in tables))
+        write(*(Written("--csv", path, b"new") for path in tables))
     assert tables[0].read_text() == "old" and not tables[1].exists()
     assert not list(Path().glob(".gearopt-*"))
 
@@ -131,23 +131,23 @@ def test_what_a_killed_run_left_is_removed_by_the_next_one(room):
     left, mine = Path(f".gearopt-{2**22 + 1}-ab"), Path(f".gearopt-{os.getpid()}-ab")
     for path in (left, mine):
         path.write_text("half")
-    write(Written("--html", Path("page.html"), "new"))
+    write(Written("--html", Path("page.html"), b"new"))
     assert not left.exists() and mine.exists()
 
 
 def test_a_link_stays_and_what_it_leads_to_is_written(room):
     (room / "real.html").write_text("old")
     (room / "link.html").symlink_to("real.html")
-    check_html(Path("link.html"), Path("mine.toml"))
-    write(Written("--html", Path("link.html"), "new"))
+    check_page("--html", Path("link.html"), Path("mine.toml"))
+    write(Written("--html", Path("link.html"), b"new"))
     assert (room / "link.html").is_symlink() and (room / "real.html").read_text() == "new"
 
 
 def test_a_pipe_is_written_to_as_it_is(room):
     os.mkfifo(room / "pipe")
     reader = os.open(room / "pipe", os.O_RDONLY | os.O_NONBLOCK)
-    check_html(Path("pipe"), Path("mine.toml"))
-    write(Written("--html", Path("pipe"), "page"))
+    check_page("--html", Path("pipe"), Path("mine.toml"))
+    write(Written("--html", Path("pipe"), b"page"))
     assert os.read(reader, 10) == b"page"
     os.close(reader)
 
@@ -155,8 +155,8 @@ def test_a_pipe_is_written_to_as_it_is(room):
 def test_what_the_system_refuses_is_one_message(room):
     (room / "loop.html").symlink_to("loop.html")
     with pytest.raises(GearoptError, match="no folder"):
-        check_html(Path("no/such.html"))
+        check_page("--html", Path("no/such.html"))
     with pytest.raises(GearoptError, match="is a folder"):
-        check_html(Path("tables"))
+        check_page("--html", Path("tables"))
     with pytest.raises(GearoptError, match="--html page.html/x"):
-        write(Written("--html", Path("page.html/x"), "page"))
+        write(Written("--html", Path("page.html/x"), b"page"))

@@ -64,3 +64,8 @@ def extents(svg):
         angle = float(re.match(r"rotate\(([-\d.]+) ", turn)[1])
         if angle in (0.0, -90.0):
             yield text.text, np.array([x, y]), np.array(half if angle == 0.0 else half[::-1])
+
+
+def without_input(html):
+    """A page without the numbers of the file, which stand as they were written."""
+    return re.sub(r"<details>\s*<summary><h2>Input data.*?</details>", "", html, flags=re.S)

@@ -58,20 +58,22 @@ def test_no_number_stands_twice(make, measures):
 def test_no_number_stands_twice_on_pages_of_files(solved, name):
     result = solved(name)
     assert repeated(page(result, "gearopt solve x.toml")) == BY_CHANCE.get(name, {})
-    assert [row for text in tables(result).values() for row in _of_several(text)] == []
+    assert _of_several(tables(result)) == []
 
 
 @pytest.mark.parametrize("make", CASES, ids=lambda f: f.__name__)
 def test_a_cell_of_csv_holds_one_value(make):
-    assert [row for text in tables(make()).values() for row in _of_several(text)] == []
+    assert _of_several(tables(make())) == []
 
 
-def _of_several(text):
-    """Rows with more than one value in a cell."""
-    head, *rows = csv.reader(io.StringIO(text))
-    if head[0].startswith("[") or "write in the file" in head:  # as the file writes it
-        return []
-    return [row for row in rows if any(SEVERAL.search(cell) for cell in row[1:])]
+def _of_several(texts):
+    """Rows with more than one value in a cell, but for tables that are written as the file is."""
+    found = []
+    for name, text in texts.items():
+        head, *rows = csv.reader(io.StringIO(text))
+        if not name.startswith("asked") and "write in the file" not in head:
+            found += [row for row in rows if any(SEVERAL.search(cell) for cell in row[1:])]
+    return found
 
 
 @pytest.mark.parametrize(

@@ -115,7 +115,7 @@ def test_readings_have_their_decimals_and_unit():
 def page(*sections):
     moves = any(section.animations for section in sections)
     given = {"sections": sections, "source": None, "moves": moves, "plots": False}
-    return render("result.html", "A page", "", {"gearopt": "0"}, "", **given)
+    return render("result.html", "A page", "", {"gearopt": "0"}, "", {}, **given)
 
 
 def test_a_page_has_one_player_for_all_its_animations():

@@ -145,7 +145,9 @@ def test_what_was_asked_stands_as_in_the_file():
     asked = {"stage": [{"pinion": {"hardness": "335 HB"}, "module": ["2 mm", "8 mm"]}]}
     result = gearopt.Result("drive", "failed", "exact", {"name": "volume"}, asked=asked)
     (table,) = answer.asked(result, METRIC).tables
-    assert [row[1].text for row in table.rows] == ['{hardness = "335 HB"}', '["2 mm", "8 mm"]']
+    shown = [(row[0].value, row[0].text, getattr(row[1], "text", row[1])) for row in table.rows]
+    assert shown[0] == ("pinion.hardness", "pinion hardness", "335 HB")
+    assert shown[1] == ("module", "module", '["2 mm", "8 mm"]')
 
 
 def test_no_text_of_a_csv_is_a_formula():

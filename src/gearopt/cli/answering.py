@@ -17,6 +17,7 @@ from gearopt.cli.app import (
     Html,
     Json,
     Most,
+    Pdf,
     Units,
     app,
     console,
@@ -77,6 +78,7 @@ def solve(
     gap: Gap = None,
     seed: Seed = 0,
     html: Html = None,
+    pdf: Pdf = None,
     csv: Csv = None,
     units: Units = None,
     as_json: Json = False,
@@ -85,8 +87,8 @@ def solve(
     from gearopt.api import idle_options
     from gearopt.api import solve as solve_file
 
-    files = checked(html, csv, units or units_of(file), file)
-    full = html is not None or csv is not None
+    files = checked(html, pdf, csv, units or units_of(file), file)
+    full = files.page is not None or csv is not None
     if not full:
         _metric(as_json, units)
     unusual = full or seed or (top or 1) > 1
@@ -142,6 +144,7 @@ def rate(
         typer.Option(help="Rate this design of a Pareto front, FILE of `gearopt pareto --json`."),
     ] = None,
     html: Html = None,
+    pdf: Pdf = None,
     csv: Csv = None,
     units: Units = None,
     as_json: Json = False,
@@ -152,8 +155,8 @@ def rate(
     """
     from gearopt.api import rate as rate_file
 
-    files = checked(html, csv, units or units_of(file), file)
-    if html is None and csv is None:
+    files = checked(html, pdf, csv, units or units_of(file), file)
+    if files.page is None and csv is None:
         _metric(as_json, units)
     if design is None and file.suffix != ".json":
         result = rate_file(file)
@@ -179,7 +182,7 @@ def explain(
     """Show sensitivities to each number of a file; of an impossible one, what to write instead."""
     from gearopt.api import explain as explain_file
 
-    measures = checked(None, None, units or units_of(file), file).measures
+    measures = checked(None, None, None, units or units_of(file), file).measures
     _metric(as_json, units)
     with watching(seconds, quiet=as_json, measures=measures) as watch:
         explanation = explain_file(file, budget=Budget(seconds), watch=watch)
@@ -232,13 +235,14 @@ def compare(
         ),
     ] = None,
     html: Html = None,
+    pdf: Pdf = None,
     csv: Csv = None,
     as_json: Json = False,
 ) -> None:
     """Compare methods by their gap to the proven bound. Ctrl-C reports finished runs."""
     from gearopt.api import compare as compare_file
 
-    files = checked(html, csv, "metric", file)
+    files = checked(html, pdf, csv, "metric", file)
     named = [name.strip() for name in (methods or "").split(",") if name.strip()]
     with following(_words, quiet=as_json, kept=lambda now: now.done > 0) as watch:
         comparison = compare_file(

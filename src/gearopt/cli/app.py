@@ -61,7 +61,12 @@ Html = Annotated[
     Path | None,
     typer.Option("--html", help="Write a page that any browser shows, without a network."),
 ]
-
+Pdf = Annotated[
+    Path | None,
+    typer.Option(
+        "--pdf", help="Write the page as PDF, by Chromium, Chrome or Edge if one is installed."
+    ),
+]
 
 Most = Annotated[
     list[str] | None,

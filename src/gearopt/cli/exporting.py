@@ -71,8 +71,8 @@ def export(
     check_output(output, "-o", f"gears.{formats[0]}", file)
     what = kept_design(file, None) if file.suffix == ".json" else file
     assert not isinstance(what, gearopt.Front)  # it needs a design, which `kept_design` says
-    text = gearopt.export(what, formats[0]).decode()
+    data = gearopt.export(what, formats[0])
     if output is None:
-        print_whole(text, end="")
+        print_whole(data.decode(), end="")
     else:
-        write(Written("-o", output, text))
+        write(Written("-o", output, data))

@@ -2,9 +2,10 @@
 
 import json
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
@@ -13,6 +14,7 @@ from gearopt.cli.app import (
     MORE_OF_FILES,
     Csv,
     Html,
+    Pdf,
     Units,
     app,
     console,
@@ -21,11 +23,13 @@ from gearopt.cli.app import (
     print_whole,
 )
 from gearopt.cli.names import result_files
-from gearopt.cli.writing import Written, check_csv, check_html, write
+from gearopt.cli.writing import Written, check_csv, check_page, write
 from gearopt.errors import GearoptError
 from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result, loads
 from gearopt.report.measures import METRIC, SYSTEMS, Measures
+from gearopt.report.pages import pdf as pdf_of
+from gearopt.report.pages.title_block import paper
 from gearopt.report.words import again
 from gearopt.scenes.reading.file_bytes import LARGEST_KEPT, first_bytes
 
@@ -42,11 +46,17 @@ HOW_FRONT = "write a front with `gearopt pareto FILE --json > front.json`"
 
 @dataclass(frozen=True)
 class Files:
-    """Where the page and the CSV files of a result go, and in what units."""
+    """Where the page, its PDF and the CSV files of a result go, and in what units."""
 
     html: Path | None
+    pdf: Path | None
     csv: Path | None
     measures: Measures
+
+    @property
+    def page(self) -> Path | None:
+        """The file that the page names as itself; None where no page is asked for."""
+        return self.html or (self.pdf and self.pdf.with_suffix(".html"))
 
 
 @app.command(rich_help_panel=MORE_OF_FILES)
@@ -60,16 +70,17 @@ def report(
         ),
     ],
     html: Html = None,
+    pdf: Pdf = None,
     csv: Csv = None,
     units: Units = None,
 ) -> None:
     """Show a kept result, comparison or Pareto front again: on the terminal, as a page, as CSV."""
     from gearopt.optimise.pareto.front import Front
 
-    checked(html, csv, units or "metric", file)
+    checked(html, pdf, csv, units or "metric", file)
     kept = _read(file)
     asked = kept.asked if isinstance(kept, Result | Front) else {}
-    files = checked(html, csv, units or asked.get("units", "metric"), file)
+    files = checked(html, pdf, csv, units or asked.get("units", "metric"), file)
     screen = console()
     try:
         with screen.capture() as text, warnings.catch_warnings():
@@ -109,7 +120,7 @@ def _again(kept: "Kept", screen: Console, files: Files) -> list[str]:
     from gearopt.optimise.pareto.front import Front
 
     if kept.file is not None:
-        checked(files.html, files.csv, files.measures.name, Path(kept.file))
+        checked(files.html, files.pdf, files.csv, files.measures.name, Path(kept.file))
     if isinstance(kept, Comparison) and files.measures is not METRIC:
         raise GearoptError("--units is not for these; this file holds a comparison")
     _show(kept, screen, files.measures)
@@ -144,59 +155,92 @@ def compared(found: "Comparison", files: Files) -> list[str]:
     """Write the page and the table of a comparison, once both are made; a line for each."""
     from gearopt.report.pages.comparison import page, tables
 
-    html = "" if files.html is None else page(found, str(files.html))
-    return _kept(files, html, {} if files.csv is None else tables(found))
+    html = "" if files.page is None else page(found, str(files.page))
+    return _kept(files, html, {} if files.csv is None else tables(found), {"report": found.head})
 
 
 def traded(front: "Front", files: Files) -> list[str]:
     """Write the page and the tables of a Pareto front, once all are made; a line for each."""
     from gearopt.report.pages.front import page, tables
 
-    html = "" if files.html is None else page(front, str(files.html), files.measures)
+    html = "" if files.page is None else page(front, str(files.page), files.measures)
     texts = {} if files.csv is None else tables(front, files.measures)
-    return _kept(files, html, texts)
+    return _kept(files, html, texts, front.asked)
 
 
-def checked(html: Path | None, csv: Path | None, units: str, *given: Path) -> Files:
+def checked(
+    html: Path | None, pdf: Path | None, csv: Path | None, units: str, *given: Path
+) -> Files:
     """Return where to write; GearoptError for what cannot be, before long work begins.
 
     given: the files that the run reads, which it never writes.
     """
-    check_html(html, *given)
-    check_csv(csv, html, *given)
+    check_page("--html", html, *given)
+    check_page("--pdf", pdf, *given)
+    check_csv(csv, (html, pdf), *given)
+    if pdf is not None:
+        with _saying(pdf):
+            if html is not None and html.resolve() == pdf.resolve():
+                raise GearoptError("is the file of --html, too; name a .pdf file")
+            pdf_of.browser()
     if units not in SYSTEMS:
         raise GearoptError(f"--units {units}: is not known; write {' or '.join(SYSTEMS)}")
-    return Files(html, csv, SYSTEMS[units])
+    return Files(html, pdf, csv, SYSTEMS[units])
 
 
 def written(result: Result, files: Files) -> list[str]:
     """Write the page and the tables, once all are made; return a line for each."""
-    if files.html is None and files.csv is None:
+    if files.page is None and files.csv is None:
         return []
     from gearopt.report.pages.result import page_of, sections, tables_of
 
     shown, html = sections(result, files.measures), ""
-    if files.html is not None:
+    if files.page is not None:
         html = page_of(
-            shown, result, again(result, str(files.html), files.measures), files.measures
+            shown, result, again(result, str(files.page), files.measures), files.measures
         )
-    return _kept(files, html, {} if files.csv is None else tables_of(shown))
+    return _kept(files, html, {} if files.csv is None else tables_of(shown), result.asked)
 
 
-def _kept(files: Files, page: str, found: Mapping[str, str]) -> list[str]:
-    """Write a page, and tables by the names of their files; return a line for each."""
+def _kept(files: Files, page: str, found: Mapping[str, str], asked: Mapping[str, Any]) -> list[str]:
+    """Write a page, and tables by the names of their files, then the PDF; a line for each."""
     lines, written = [], []
     if files.html is not None:
-        written.append(Written("--html", files.html, page))
+        written.append(Written("--html", files.html, page.encode()))
         lines.append(f"\nPage: {files.html}")
     if files.csv is not None:
         _make_folder(files.csv)
         paths = {files.csv / name: text for name, text in found.items()}
         # for spreadsheets
-        written += [Written("--csv", path, text, "utf-8-sig") for path, text in paths.items()]
+        written += [Written("--csv", path, t.encode("utf-8-sig")) for path, t in paths.items()]
         lines.append(f"\nTables: {', '.join(map(str, paths))}")
     write(*written)
+    if files.pdf is not None:
+        with _saying(files.pdf):
+            data = _printed(files, page, paper(asked, files.measures))
+        write(Written("--pdf", files.pdf, data))
+        lines.append(f"\nPDF: {files.pdf}")
     return lines
+
+
+def _printed(files: Files, page: str, sheet: str) -> bytes:
+    """The PDF of a page; where no browser makes it, the page is kept beside its place."""
+    try:
+        return pdf_of.printed(page, sheet)
+    except GearoptError as wrong:
+        if files.html is not None or files.page is None or files.page.exists():
+            raise
+        write(Written("--pdf", files.page, page.encode()))
+        raise GearoptError(f"{wrong}; the page is {files.page}") from wrong
+
+
+@contextmanager
+def _saying(path: Path) -> Iterator[None]:
+    """Name the option before what is wrong with a PDF."""
+    try:
+        yield
+    except GearoptError as wrong:
+        raise GearoptError(f"--pdf {path}: {wrong}") from wrong
 
 
 def _make_folder(folder: Path) -> None:

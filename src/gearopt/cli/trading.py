@@ -4,7 +4,19 @@ from typing import Annotated
 
 import typer
 
-from gearopt.cli.app import TO_BEGIN, Csv, File, Html, Json, Most, Units, app, front_code, numbers
+from gearopt.cli.app import (
+    TO_BEGIN,
+    Csv,
+    File,
+    Html,
+    Json,
+    Most,
+    Pdf,
+    Units,
+    app,
+    front_code,
+    numbers,
+)
 from gearopt.cli.reporting import answer, checked, traded
 from gearopt.cli.watching import watching
 from gearopt.optimise.result import Budget
@@ -43,6 +55,7 @@ def pareto(
     seconds: Annotated[float, typer.Option(min=0.0, help="Stop after this time.")] = SECONDS,
     seed: Annotated[int, typer.Option(help="Seed of random methods.")] = 0,
     html: Html = None,
+    pdf: Pdf = None,
     csv: Csv = None,
     units: Units = None,
     as_json: Json = False,
@@ -50,7 +63,7 @@ def pareto(
     """Find the Pareto front of two or three objectives. Ctrl-C keeps the designs found so far."""
     from gearopt.api import pareto as pareto_of
 
-    files = checked(html, csv, units or units_of(file), file)
+    files = checked(html, pdf, csv, units or units_of(file), file)
     with watching(seconds, quiet=as_json, measures=files.measures) as watch:
         front = pareto_of(
             file,

@@ -3,7 +3,7 @@
 import io
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TextIO
 
@@ -51,34 +51,39 @@ BESIDE = ".gearopt-"  # with a process number: files that are being written
 PROBLEM, TABLE = ".toml", ".csv"  # endings: of files that are never written, and of tables
 
 
-def check_html(path: Path | None, *given: Path) -> None:
-    """Raise GearoptError where a page cannot be written, as `check_output` does."""
-    check_output(path, "--html", "page.html", *given)
+def check_page(option: str, path: Path | None, *given: Path) -> None:
+    """Raise GearoptError where a page cannot be written, as `check_output` does.
+
+    option: --html or --pdf.
+    """
+    check_output(path, option, f"page.{option.strip('-')}", *given)
 
 
 def check_output(path: Path | None, option: str, sample: str, *given: Path) -> None:
     """Raise GearoptError where a file cannot be written, before long work begins.
 
-    sample: a name for it. given: the files that the run reads. A link counts as the file that it
-    leads to.
+    sample: a name for it. given: the files that the run reads and those that it writes before. A
+    link counts as the file that it leads to.
     """
     if path is None:
         return
+    what = f"{option} {path}"
     if path.is_dir():
-        raise GearoptError(f"{option} {path}: is a folder; name a file, such as {path / sample}")
+        raise GearoptError(f"{what}: is a folder; name a file, such as {path / sample}")
     folder = _place(path).parent
     if not folder.is_dir():
-        raise GearoptError(f"{option} {path}: there is no folder {folder}")
+        raise GearoptError(f"{what}: there is no folder {folder}")
     plain = path.with_name(f"{path.stem}-{sample}")
-    _spare(f"{option} {path}", path, given, f"name another file, such as {plain}")
+    _spare(what, path, given, f"name another file, such as {plain}")
     if _ordinary(path) and not (os.access(folder, os.W_OK) and _writable(path)):
-        raise GearoptError(f"{option} {path}: nothing may be written there")
+        raise GearoptError(f"{what}: nothing may be written there")
 
 
-def check_csv(folder: Path | None, html: Path | None, *given: Path) -> None:
+def check_csv(folder: Path | None, pages: Sequence[Path | None], *given: Path) -> None:
     """Raise GearoptError where tables cannot be written, or would replace a file in use.
 
-    The names of the tables are not known before: any file of the folder that ends in .csv counts.
+    pages: of --html and --pdf. The names of the tables are not known before: any file of the
+    folder that ends in .csv counts.
     """
     if folder is None:
         return
@@ -92,18 +97,18 @@ def check_csv(folder: Path | None, html: Path | None, *given: Path) -> None:
         _spare(f"--csv {folder}", table, given, "name another folder")
         if not _writable(table):
             raise GearoptError(f"--csv {folder}: {table} may not be written")
-    if html is not None and _is_table(_place(html)) and _place(html).parent == whole:
-        raise GearoptError(f"--html {html}: --csv writes its tables there; name a .html file")
+    for page, end in zip(pages, ("html", "pdf"), strict=True):
+        if page is not None and _is_table(_place(page)) and _place(page).parent == whole:
+            raise GearoptError(f"--{end} {page}: --csv writes its tables there; name a .{end} file")
 
 
 @dataclass(frozen=True)
 class Written:
-    """A file that an option names, and its text."""
+    """A file that an option names, and its bytes."""
 
     option: str
     path: Path
-    text: str
-    encoding: str = "utf-8"
+    data: bytes
 
 
 def write(*files: Written) -> None:
@@ -120,7 +125,7 @@ def write(*files: Written) -> None:
                 beside[_place(now.path)] = _beside(now)
         for now in files:
             if (draft := beside.get(_place(now.path))) is None:
-                now.path.write_text(now.text, encoding=now.encoding)
+                now.path.write_bytes(now.data)
             else:
                 draft.replace(_place(now.path))
                 del beside[_place(now.path)]
@@ -137,15 +142,15 @@ def write(*files: Written) -> None:
 
 
 def _beside(file: Written) -> Path:
-    """Return a new file beside the place of another, with its text; stale ones are removed."""
+    """Return a new file beside the place of another, with its bytes; stale ones are removed."""
     place = _place(file.path)
     for stale in place.parent.glob(f"{BESIDE}*"):
         if not _runs(stale.name.removeprefix(BESIDE).partition("-")[0]):
             stale.unlink(missing_ok=True)
     draft = place.with_name(f"{BESIDE}{os.getpid()}-{os.urandom(4).hex()}")
     try:
-        with draft.open("x", encoding=file.encoding, newline="") as stream:
-            stream.write(file.text)
+        with draft.open("xb") as stream:
+            stream.write(file.data)
         if place.exists():
             shutil.copymode(place, draft)
     except BaseException:

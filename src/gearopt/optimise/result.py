@@ -9,6 +9,7 @@ from dataclasses import MISSING, field, fields, is_dataclass, replace
 from functools import cache
 from importlib import import_module
 from numbers import Real
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -245,6 +246,10 @@ class Result:
     def to_rexs(self) -> bytes:
         """Return the gears of a drive as a REXS file, XML of version 2.0.0, for other programs."""
         return bytes(import_module(API).export(self, "rexs"))
+
+    def to_pdf(self, path: str | Path, units: str = "metric") -> None:
+        """Write its page as PDF, by an installed browser; units: "metric" or "inch"."""
+        shown("write_pdf", self.to_html(units), path, self.asked, units)
 
     to_dict, to_json = as_dict, as_json
 

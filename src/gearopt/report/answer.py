@@ -1,7 +1,7 @@
 """Sections that every kind of result shows: key figures, limits, the file, progress, proof."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 from gearopt.optimise.pareto.front import Front
@@ -69,7 +69,13 @@ COUNTED = {  # further keys of a proof in words
     "nodes": "partial designs or ranges examined",
     "pruning_margin": "relative margin of what is excluded",
 }
-ELSEWHERE = ("gearopt", "kind", "title", "source")  # keys of a file that stand at other places
+ELSEWHERE = (
+    "gearopt",
+    "kind",
+    "title",
+    "source",
+    "report",
+)  # keys of a file that stand at other places
 UNUSED = "unused"  # a limit that is farther away than the size to which it is relative
 EARLIEST = 1e-4  # s; the logarithmic axis begins here at the earliest
 
@@ -347,33 +353,43 @@ def assumptions(result: Result | Front, measures: Measures) -> Section | None:
 
 
 def asked(result: Result, measures: Measures) -> Section | None:
-    """The file's tables as it has them; None where there was no file."""
+    """The numbers of the file's tables as they were written; None where there was no file."""
     asked = {key: value for key, value in result.asked.items() if key not in ELSEWHERE}
     if not asked:
         return None
     source = result.asked.get("source")
     words = [f"Source: {source}."] if source else []
-    single = {key: value for key, value in asked.items() if not _is_table(value)}
+    single = {key: value or "by default" for key, value in asked.items() if not _is_table(value)}
     tables = [_asked_table(key, value) for key, value in asked.items() if _is_table(value)]
     if single:
         tables.insert(0, _asked_table("", single))
-    return Section("What was asked", words=words, tables=tables, folded=True)
+    return Section("Input data", words=words, tables=tables, folded=True)
 
 
 def _is_table(value: Any) -> bool:
     several = isinstance(value, list) and bool(value) and isinstance(value[0], Mapping)
-    return several or isinstance(value, Mapping)
+    return several or (isinstance(value, Mapping) and bool(value))
 
 
 def _asked_table(key: str, value: Any) -> Table:
     """A table of the file, one column per table where several have one name."""
     several = isinstance(value, list)
-    columns: Sequence[Mapping[str, Any]] = value if several else (value,)
+    columns = [_flat(column) for column in (value if several else (value,))]
     names = list(dict.fromkeys(name for column in columns for name in column))
-    heads = [f"[[{key}]]", *(str(k + 1) for k in range(len(columns)))]
-    heads = heads if several else [f"[{key}]" if key else "", ""]
-    rows = [[name, *(_ends(column.get(name)) for column in columns)] for name in names]
+    title = key.replace("_", " ")
+    heads = [title, *(str(k + 1) for k in range(len(columns)))] if several else [title, ""]
+    labels = [Cell(name, re.sub("[_.]", " ", name)) for name in names]
+    rows = [[label, *(_ends(column.get(label.value)) for column in columns)] for label in labels]
     return Table(f"asked {key}".strip(), heads, rows)
+
+
+def _flat(table: Mapping[str, Any]) -> dict[str, Any]:
+    """A table with those inside it as keys of its own: `pinion.hardness`."""
+    flat: dict[str, Any] = {}
+    for key, value in table.items():
+        inner = _flat(value) if isinstance(value, Mapping) else {"": value}
+        flat |= {f"{key}.{name}".rstrip("."): entry for name, entry in inner.items()}
+    return flat
 
 
 def _ends(value: Any) -> Any:
@@ -406,7 +422,8 @@ def progress(result: Result, measures: Measures) -> Section | None:
         340,
     )
     words = "Best value so far" + (" and its bound" if bound else "")
-    return Section("Progress", figures=(Figure(traces, plot, f"{words} against wall time."),))
+    figure = Figure(traces, plot, f"{words} against wall time.")
+    return Section("Progress", figures=(figure,), screen=True)
 
 
 def _converted(step: dict[str, Any], unit: str, measures: Measures) -> dict[str, Any]:

@@ -27,7 +27,7 @@ FORMULA = re.compile(r"\s*[=+\-@\uff1d\uff0b\uff0d\uff20]|[\t\r\n]")
 NUMBER = re.compile(r"[+-]?[0-9]*\.?[0-9]+([eE][+-]?[0-9]+)?")
 ABSENT = "–"  # in place of a value that there is none of; a sentence gives the reason
 ROWS_ON_TERMINAL = 24  # at most, of a list; the page and the CSV hold all
-LONG_TABLE = 24  # rows; a longer table may break between rows when it is printed
+LONG_TABLE = 15  # rows; a longer table may break between rows when it is printed
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,8 @@ class Section:
     """A heading, then key figures, sentences, drawings at one scale, animations, plots, tables.
 
     half: two such sections stand side by side where the page is wide. folded: the page shows its
-    heading, and the rest when asked. terminal: the sentences and
+    heading, and the rest when asked; paper has all of it. screen: what a designer needs and a
+    customer does not, which is not printed. terminal: the sentences and
     tables that the terminal shows of it, in its order. notes: sentences that come before all else,
     in a colour that is not missed.
     """
@@ -171,6 +172,7 @@ class Section:
     tables: Sequence[Table] = ()
     half: bool = False
     folded: bool = False
+    screen: bool = False
     terminal: Sequence[str | Text | Table] = ()
     notes: Sequence[str] = ()
 

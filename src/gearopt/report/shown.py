@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
 from difflib import get_close_matches
 from itertools import accumulate
+from pathlib import Path
 from typing import Any
 
 from rich.text import Text
@@ -27,6 +28,8 @@ from gearopt.report.pages import comparison as comparison_pages
 from gearopt.report.pages import front as front_pages
 from gearopt.report.pages import result as result_pages
 from gearopt.report.pages.frame import templates
+from gearopt.report.pages.pdf import printed
+from gearopt.report.pages.title_block import paper
 from gearopt.report.screen import harmless
 from gearopt.report.section import ROWS_ON_TERMINAL, Table
 from gearopt.report.words import (
@@ -273,6 +276,11 @@ def whole_page(result: Result, units: str) -> str:
 def compared_page(comparison: Comparison) -> str:
     """The page of a comparison."""
     return comparison_pages.page(comparison)
+
+
+def write_pdf(page: str, path: str | Path, asked: Mapping[str, Any], units: str) -> None:
+    """Write a page as PDF; asked: the tables of the file."""
+    Path(path).write_bytes(printed(page, paper(asked, measures_of(units))))
 
 
 def _tables(result: Result, units: str) -> Iterator[tuple[str, Table]]:

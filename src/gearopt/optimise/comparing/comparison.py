@@ -12,6 +12,7 @@ import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import field, replace
 from datetime import date
+from pathlib import Path
 from typing import Any
 
 from gearopt.errors import CertificateError
@@ -138,7 +139,7 @@ class Comparison:
     budget: {evaluations, seconds, patience_seconds}; settings: {method: {name: value}}. bound_from:
     the method that was asked for a bound. objectives: of fronts, else (); most: largest values of
     them by name. complete: every run was made; else message says how many. changes: what is
-    otherwise than in the file, by key.
+    otherwise than in the file, by key. head: its table [report].
     """
 
     groups: tuple[Group, ...]
@@ -155,6 +156,7 @@ class Comparison:
     file: str | None = None
     file_sha256: str | None = None
     changes: Mapping[str, Any] = field(default_factory=dict)
+    head: Mapping[str, Any] = field(default_factory=dict)
     date: str = field(default_factory=lambda: date.today().isoformat())
     machine: Mapping[str, Any] = field(default_factory=lambda: machine())
     versions: Mapping[str, str] = field(default_factory=lambda: versions("numpy", "casadi"))
@@ -170,6 +172,10 @@ class Comparison:
     def to_html(self) -> str:
         """Return its page, one self-contained HTML text."""
         return str(shown("compared_page", self))
+
+    def to_pdf(self, path: str | Path) -> None:
+        """Write its page as PDF, by an installed browser."""
+        shown("write_pdf", self.to_html(), path, {"report": self.head}, "metric")
 
     to_dict, to_json = as_dict, as_json
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import field
+from pathlib import Path
 from typing import Any
 
 from gearopt.frozen import dataclass
@@ -112,6 +113,10 @@ class Front:
     def to_html(self, units: str = "metric") -> str:
         """Return its page, one self-contained HTML text; units: "metric" or "inch"."""
         return str(shown("front_page", self, units))
+
+    def to_pdf(self, path: str | Path, units: str = "metric") -> None:
+        """Write its page as PDF, by an installed browser; units: "metric" or "inch"."""
+        shown("write_pdf", self.to_html(units), path, self.asked, units)
 
     to_dict, to_json = as_dict, as_json
 

@@ -13,7 +13,7 @@ from gearopt.report.measures import Measures, rounded
 from gearopt.report.section import Section
 from gearopt.report.words import sentence
 
-WIDE, HIGH = 560.0, 340.0  # px of a drawing, at most
+WIDE, HIGH = 550.0, 340.0  # px of a drawing, at most: two stand side by side on paper
 ALONG, ACROSS = 4.6, 0.9  # normal modules: to either side of the pitch point, below the roots
 FILLET, FLANK = 8, 13  # points of a tooth's side
 DOT = 2.6  # px: radius of a point of contact
@@ -55,6 +55,7 @@ def section(result: Result, measures: Measures) -> Section | None:
             f"{WORDS.format(names=below, turns=turns)}{helical}{alone}.{SEVERAL * (len(rows) > 1)}",
         ),
         drawings=tuple(drawing for _, drawing in shown),
+        screen=True,
     )
 
 

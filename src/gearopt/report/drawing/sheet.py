@@ -27,7 +27,7 @@ SERIES_OF_MEMBERS = (1, 4)  # the colours of pinion and wheel among them
 Point = tuple[float, float]
 SHEET = 660.0  # px across an A4 sheet inside its margins
 GUTTER = 18.0  # px between drawings, as in drawing.css
-TALL = 480.0  # px of a sheet that drawings may take, where their text stays legible
+TALL = 330.0  # px of a sheet that drawings may take, where their text stays legible
 LEGIBLE = 0.58  # of a text of 12 px: 5.2 pt on paper
 
 

@@ -10,8 +10,8 @@ from gearopt.report.drawing.train_views import section as gears_in_one_line
 from gearopt.report.explained import remedies, sensitivities
 from gearopt.report.kinds import Pages
 
-OPENING = (summary, remedies, impossible)
-REQUEST = (asked, limits, sensitivities)
+OPENING = (summary, remedies, impossible, asked)
+REQUEST = (limits, sensitivities)
 CLOSING = (progress, proven, assumptions)
 AFTER_DESIGN = (sensitivities, remedies, summary)  # on the terminal, after the design
 

@@ -31,6 +31,7 @@ def page(comparison: Comparison, html: str = "comparison.html") -> str:
         _subtitle(comparison),
         {"gearopt": comparison.gearopt, **comparison.versions},
         words.command(comparison, html),
+        {"report": comparison.head},
         comparison=comparison,
         blocks=[_block(comparison, group, colour) for group in comparison.groups],
         columns=words.columns(comparison),

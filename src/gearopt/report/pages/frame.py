@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
+from gearopt.report.pages.title_block import block, margins
+
 
 @cache
 def templates() -> Any:
@@ -34,13 +36,15 @@ def render(
     subtitle: str,
     versions: Mapping[str, str],
     command: str,
+    asked: Mapping[str, Any],
     plots: bool = True,
     moves: bool = False,
     **content: Any,
 ) -> str:
     """A page from a template that extends frame.html; all but our own files is escaped.
 
-    plots: the page has figures, which need plotly (4.8 MB) inside it. moves: it has animations.
+    asked: the tables of the file, of which [report] is the title block. plots: the page has
+    figures, which need plotly (4.8 MB) inside it. moves: it has animations.
     """
     from markupsafe import Markup
 
@@ -54,6 +58,8 @@ def render(
         subtitle=subtitle,
         versions=versions,
         command=command,
+        block=block(asked),
+        margins=Markup(margins(title, asked)),
         style=inlined("frame.css"),
         script=inlined("frame.js"),
         player=inlined("player.js") if moves else "",

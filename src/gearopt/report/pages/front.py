@@ -39,6 +39,7 @@ def page(front: Front, html: str = "page.html", measures: Measures = METRIC) -> 
         measures.words(sentence(front_words.verdict(front)[0])),
         {"gearopt": front.gearopt, **front.versions},
         front_words.command(front, measures, html),
+        front.asked,
         plots=bool(front.points),
         count=len(front.points),
         first=[_summary(front, every, measures), *_drawn(front, measures)],

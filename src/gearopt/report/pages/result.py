@@ -37,6 +37,7 @@ def page_of(shown: Sequence[Section], result: Result, command: str, measures: Me
         opening(result, measures),
         {"gearopt": result.gearopt, **result.versions},
         command,
+        result.asked,
         plots=any(section.figures for section in shown),
         moves=any(section.animations for section in shown),
         sections=shown,

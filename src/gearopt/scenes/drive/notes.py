@@ -257,9 +257,9 @@ def _teeth(scene: Scene) -> list[str]:
                 "whose pinions have the profile shift of the file, that of their wheels following "
                 f"from {source}, with both tips shortened alike"
             )
-    ends = "torques are those without losses in mesh and bearings"
+    ends = "torques are computed without losses in meshes and bearings"
     what = "The gears" if len(pairs) == len(scene.stage_tables) else "The gears of pairs"
-    sentences = [f"{what} are external cylindrical ones {shifts}; {ends}."]
+    sentences = [f"{what} are external cylindrical gears {shifts}; {ends}."]
     if not pairs:
         sentences = [f"{ends.capitalize()}."]
     usual = {replace(ISO_53_A, pressure_angle=r.pressure_angle) for cut in each for r in cut.racks}

@@ -85,8 +85,13 @@ DRIVE = {
     "layout, a table with shaft_diameters or shaft_stress": ".shaft .shafts .wellen",
     "layout, a table with largest_width, largest_height and largest_length": ".housing .space "
     ".envelope .box gehaeuse",
-    "title or source, at the top of the file; tables of your own are named [x-...]": "author date "
-    "version designer description comment project general",
+    "title or source, at the top of the file; tables of your own are named [x-...]": "version "
+    "description comment project general",
+    "title, at the top of the file": "report.title report.name report.subject",
+    "engineer, in [report]": "author designer prepared prepared_by drawn_by checked_by bearbeiter",
+    "approved, in [report]": "approved_by released_by freigegeben",
+    "customer, in [report]": "client kunde",
+    "company, in [report]": "firm firma",
     "crowned, in [rating], or helix_modification in [rating.iso6336]": "crowning lead_crowning",
     "helix_modification, in [rating.iso6336]": "end_relief lead_modification helix_correction "
     "flankenlinienkorrektur",

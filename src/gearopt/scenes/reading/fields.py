@@ -8,6 +8,7 @@ exactly as written (int or Decimal).
 import math
 import re
 from collections.abc import Callable
+from datetime import date as Date
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
@@ -388,6 +389,8 @@ def words() -> Reads:
     """Read free text of a line or two."""
 
     def read(value: Any, example: Any) -> str:
+        if isinstance(value, Date):
+            return str(value)
         if not isinstance(value, str):
             plain = _is_number(value) and not _is_far(value)
             raise refuse("is not a text", str(value) if plain else None)
@@ -434,6 +437,25 @@ def meant(text: str, dimension: str, likely: Callable[[str], str]) -> str:
     return f"{match[1].replace(',', '.')} {unit}"
 
 
+class ReportHead(Table):
+    """What stands in the title block of the page and of the PDF, as it is written here.
+
+    The title is that at the top of the file. It changes no number of the answer.
+    """
+
+    company: Annotated[str, words()] = Field("", description="Who designed the gears")
+    customer: Annotated[str, words()] = Field("", description="For whom")
+    number: Annotated[str, words()] = Field("", description="Number of the report or the project")
+    revision: Annotated[str, words()] = Field("", description="Its revision")
+    date: Annotated[str, words()] = Field("", description="Its date; none is added by itself")
+    engineer: Annotated[str, words()] = Field("", description="Who prepared it")
+    approved: Annotated[str, words()] = Field("", description="Who approved it")
+    note: Annotated[str, words()] = Field("", description="A remark of a line or two")
+    paper: Annotated[str | None, choice("A4", "Letter")] = Field(
+        None, description="Paper of the PDF; by default A4, in inches Letter"
+    )
+
+
 class ProblemFile(Table):
     """What files of all kinds have."""
 
@@ -441,3 +463,4 @@ class ProblemFile(Table):
     source: Annotated[str, words()] = Field(
         "", description="Where the data and the expected value come from"
     )
+    report: ReportHead | None = None

@@ -17,6 +17,8 @@ from gearopt.report.design_tables import (
 )
 from gearopt.report.drawing import layout_views, mesh_view, train_views
 from gearopt.report.drawing.bodies import layout_of
+from gearopt.report.drawing.impossible_views import section as impossible
+from gearopt.report.explained import remedies
 from gearopt.report.exports import drawn, gears, listed
 from gearopt.report.headline import of_limits
 from gearopt.report.kinds import Pages
@@ -29,7 +31,7 @@ from gearopt.report.kinds.drive import (
     rating_tables,
     rating_words,
 )
-from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, OPENING, REQUEST
+from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, REQUEST
 from gearopt.report.measures import METRIC, Measures, gap_percent, rounded
 from gearopt.report.section import Cell, Section, Table, Tile, cell
 from gearopt.report.words import (
@@ -408,8 +410,8 @@ RATINGS = (
 )
 PAGES_OF_GIVEN = Pages(
     sections=(
-        *(summary, *RATINGS[:2], *DRAWINGS, *RATINGS[2:]),
-        *(planetary.loads, numbers, asked, assumptions),
+        *(summary, asked, *RATINGS[:2], *DRAWINGS, *RATINGS[2:]),
+        *(planetary.loads, numbers, assumptions),
     ),
     terminal=(*CAPACITIES, planetary.loads, rating_gears.factors, rating_tables.forces)
     + (drawing_tables.section,),
@@ -420,9 +422,9 @@ PAGES_OF_GIVEN = Pages(
 )
 PAGES = Pages(
     sections=(
-        *OPENING,
-        impossible_layout.section,
+        *(summary, remedies, impossible, impossible_layout.section),
         *DRAWINGS,
+        asked,
         numbers,
         planetary.loads,
         *RATINGS,

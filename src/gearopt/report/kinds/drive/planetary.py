@@ -213,7 +213,7 @@ def turning(result: Result, measures: Measures) -> Section | None:
         figures.append(figure(stage, k, seen, gears, measures))
     if not turns and not words:
         return None
-    return Section("Planetary stages", words=words, animations=turns, figures=figures)
+    return Section("Planetary stages", words=words, animations=turns, figures=figures, screen=True)
 
 
 def loads(result: Result, measures: Measures) -> Section | None:

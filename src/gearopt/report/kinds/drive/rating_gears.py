@@ -81,14 +81,14 @@ def _said(rating: DriveRating) -> list[str]:
     if any(rated.by == "ISO 6336" for rated in rating.each):
         words += [PERMISSIBLE, LOAD_FACTORS]
     if len(rating.meshes) > 1:
-        words.append(f"Nearest to the required safety factors: {'; '.join(nearest(rating))}.")
+        words.append(f"Closest to their required safety factors: {'; '.join(nearest(rating))}.")
     if rating.levels:
-        words.append("Safety factors are those of all load levels together, by Miner's rule.")
+        words.append("Safety factors are of the whole load spectrum, by Miner's rule.")
     lives = [(g.bending_life_cycles, g.contact_life_cycles) for _, g in _columns(rating)]
     if any(None in both for both in lives):
         words.append(
-            f"The life curves end at {LONGEST_LIFE} cycles: a gear that lasts longer has a life of "
-            "over so many, and over the hours that they take."
+            f"The life curves end at {LONGEST_LIFE} cycles; a longer life is given as over so many "
+            "cycles, and as over the hours that they take."
         )
     return words
 

@@ -367,7 +367,7 @@ def prices(result: Result, measures: Measures) -> Section | None:
 
 SECTIONS = (chosen, motion, speeds, stability, rest)
 PAGES = Pages(
-    sections=(*OPENING, *SECTIONS, asked, limits, prices, progress, proven, assumptions),
+    sections=(*OPENING, *SECTIONS, limits, prices, progress, proven, assumptions),
     terminal=(rest, stability, motion, speeds, chosen, limits, prices, remedies, summary),
     tiles=tiles,
     binding_limit=binding_limit,
@@ -375,7 +375,7 @@ PAGES = Pages(
     drawn=False,
     exports={"csv": listed(motion, speeds)},
     pages_of_given=Pages(
-        sections=(summary, *SECTIONS, assumptions),
+        sections=(summary, asked, *SECTIONS, assumptions),
         terminal=(rest, stability, motion, speeds, summary),
         tiles=tiles,
         binding_limit=binding_limit,

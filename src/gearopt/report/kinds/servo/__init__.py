@@ -2,11 +2,10 @@
 
 from gearopt.formulations.servo.servo_design import GOALS, RatioDesign, TrainDesign
 from gearopt.optimise.result import Result
-from gearopt.report import answer, explained
-from gearopt.report.drawing import impossible_views
+from gearopt.report import answer
 from gearopt.report.headline import PROVEN
 from gearopt.report.kinds import MakeSection, Pages
-from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, REQUEST
+from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, OPENING, REQUEST
 from gearopt.report.kinds.servo import accuracy as axis_accuracy
 from gearopt.report.kinds.servo import gearhead as axis_gearhead
 from gearopt.report.kinds.servo import housing as axis_housing
@@ -111,9 +110,7 @@ def _answered(make: MakeSection) -> MakeSection:
 PAGES = Pages(
     whole="axis",
     sections=(
-        answer.summary,
-        explained.remedies,
-        impossible_views.section,
+        *OPENING,
         axis_motion.section,
         axis_gearhead.section,
         axis_trains.section,

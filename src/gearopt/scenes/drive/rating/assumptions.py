@@ -34,17 +34,17 @@ def rating_assumptions(scene: Scene) -> list[str]:
     drive, outer = (drive, "external ") if external else ("the members named input drive", "")
     sentences = [
         f"The rating is of {outer}cylindrical gears on parallel shafts; {drive}. "
-        "Torques and forces are those without losses.",
-        "The standards themselves were not read: formulas and values are those of textbooks, "
-        "tables and public programs; those from a single source are marked unverified.",
+        "Torques and forces are computed without losses.",
+        "Formulas and values were taken from textbooks, tables and public programs, not from the "
+        "standards themselves; those with a single source are marked unverified.",
         *_idlers(scene),
         *planet_assumptions(scene),
         *_named_steels(scene),
         *(_agma_assumptions(scene, asked) if agma else []),
         *(_iso_assumptions(scene, asked) if iso else []),
-        "Scuffing, micropitting, flank fracture, wear, shafts and bearings were not looked at.",
-        "S_H is a ratio of contact stresses, its square one of loads. Lives are those at which a "
-        "safety factor is 1.",
+        "Scuffing, micropitting, flank fracture, wear, shafts and bearings were not rated.",
+        "S_H is a ratio of contact stresses; its square is a ratio of loads. A life ends where a "
+        "safety factor falls to 1.",
     ]
     unstated = _unstated(asked, agma, iso)
     return [*sentences, f"Not in the file: {', '.join(unstated)}."] if unstated else sentences

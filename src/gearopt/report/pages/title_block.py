@@ -1,0 +1,63 @@
+"""The title block of a page, from the table [report]; header and footer of its printed sheets."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from gearopt.report.measures import INCH, METRIC, Measures
+
+LABELS = {  # keys of [report]: what stands before their text
+    "company": "Company",
+    "customer": "Customer",
+    "number": "Report no.",
+    "revision": "Revision",
+    "date": "Date",
+    "engineer": "Prepared by",
+    "approved": "Approved by",
+    "note": "Note",
+}
+PAPERS = {METRIC: "A4", INCH: "Letter"}
+LONGEST = 70  # characters of a text in a margin, which is one line
+
+
+def block(asked: Mapping[str, Any]) -> dict[str, str]:
+    """What a title block says, by its labels; asked: the tables of the file."""
+    head = _head(asked)
+    return {label: str(head[key]) for key, label in LABELS.items() if head.get(key)}
+
+
+def margins(title: str, asked: Mapping[str, Any]) -> str:
+    """Rules of CSS for the margins of printed sheets: who, what, which revision, page x of y.
+
+    Browsers that have no boxes in margins leave them out.
+    """
+    told = block(asked)
+    which = [f"{k} {told[k]}" if k == "Revision" else told[k] for k in SHORT if k in told]
+    texts = {
+        "@top-left": _text(told.get("Company", "")),
+        "@top-right": _text(title),
+        "@bottom-left": _text(", ".join(which)),
+        "@bottom-right": '"Page " counter(page) " of " counter(pages)',
+    }
+    return "".join(f"{box} {{ content: {text} }} " for box, text in texts.items())
+
+
+SHORT = ("Report no.", "Revision", "Date")  # in the footer
+
+
+def paper(asked: Mapping[str, Any], measures: Measures) -> str:
+    """The paper of a PDF: that of the file, else the one usual where these units are."""
+    wanted = str(_head(asked).get("paper"))
+    return wanted if wanted in PAPERS.values() else PAPERS[measures]
+
+
+def _head(asked: Mapping[str, Any]) -> Mapping[str, Any]:
+    head = asked.get("report")
+    return head if isinstance(head, Mapping) else {}
+
+
+def _text(words: str) -> str:
+    """A string of CSS, in which no sign but letters and digits stands as it is."""
+    short = words if len(words) <= LONGEST else f"{words[: LONGEST - 1]}…"
+    return (
+        '"' + "".join(c if c.isalnum() and c.isascii() else f"\\{ord(c):x} " for c in short) + '"'
+    )
