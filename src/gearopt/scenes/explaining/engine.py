@@ -27,9 +27,11 @@ from gearopt.scenes.reading.toml_writing import dotted
 
 logger = logging.getLogger("gearopt.remedies")
 FACTORS_TRIED = (1e6, 1e3, 16.0, 4.0, 2.0, 1.3, 1.1)  # the first that is decided counts
-LAST = 3.0  # times the time to make numbers sharper, for whether less suffices
+LAST = 1.5  # times the time to make numbers sharper, for whether less suffices
 SHARE_OF_TIME = 0.4  # at most, of the time that is left, to make numbers sharper in given seconds
 SECANTS = 24
+FASTER = 4.0  # power by which steps grow as long as there are designs
+OFTEN, FEW = 3, 5  # after so many designs for less, questions whether ones like them suffice
 NO_PROGRESS = 1e-2  # of that logarithm: what falls by less in a step does not fall
 NEGLIGIBLE = 1e-9  # of a factor
 LOG_TOLERANCE = 2e-5  # of the logarithm of a utilisation that counts as 1
@@ -38,7 +40,6 @@ CLOSER = (1.00005, 1.000005, 1.0 + 1e-7, 1.0 + 1e-9)  # in turn, where a little 
 JOINT = "least"  # kind of a remedy whose numbers do not move alike: each of them is needed
 EACH = (JOINT, "pair")
 DEAR = 0.1  # s, of a question whose answer is no
-FASTER = 4.0  # power by which steps grow as long as there are designs
 DIGITS = (3, 4)  # significant digits of what one would write, tried in turn
 
 
@@ -70,10 +71,10 @@ class FeasibilityQuestions:
     excess: that of the file itself, where it is known. lower_bounds: whether a factor that is
     proven too small is told as a bound. far: the factor, beyond a floor, up to which is tried.
     likely: whether known designs suffice for a changed file, asked as a factor is narrowed once a
-    no was dear; only yes counts. sufficient: how many groups of numbers are known to suffice.
-    apply: makes the file with numbers moved. halving: seconds of a question while a change is
-    halved, and once one stayed open, of which so many doubts may; ladder: factors tried where the
-    farthest stays open. open: keys of numbers of which no factor was decided.
+    no was dear; only yes counts. near: the same, of designs like them. sufficient: how many groups
+    of numbers are known to suffice. apply: makes the file with numbers moved. halving: seconds of a
+    question while a change is halved, and once one stayed open, of which so many doubts may;
+    ladder: factors tried where the farthest stays open. open: keys of numbers without any factor.
     """
 
     scene: Any
@@ -84,6 +85,7 @@ class FeasibilityQuestions:
     excess: float | None = None
     lower_bounds: bool = False
     likely: Possible[Any] | None = None
+    near: Possible[Any] | None = None
     far: float = REACH
     halving: tuple[float, float] = (math.inf, math.inf)
     doubts: int = DOUBTS
@@ -344,11 +346,14 @@ def _narrow_by_designs(
 ) -> None:
     """Lower a factor to what known designs need, until a little less does not suffice.
 
-    As long as designs for less need nearly as much the steps grow; of rough ones there are none.
+    Of rough factors there is no less. Where it often suffices, far less is asked of designs like
+    those. As long as designs for less need nearly as much the steps grow.
     """
     near = min(close, FACTOR_TOLERANCE)
-    _lower(asked, known, near)
-    step, known.doubts = near, 0
+    _lower(asked, known, near, asked.likely)
+    if not known.sure and close < ROUGH:  # what stayed open may be possible
+        known.low, known.sure = 1.0, True
+    step, known.doubts, lowered = near, 0, 0
     while close < ROUGH and known.high > known.low * near * (1.0 + NEGLIGIBLE):
         if known.doubts >= asked.doubts or asked.clock.over or clock.over:
             return
@@ -359,20 +364,27 @@ def _narrow_by_designs(
         sure, left = asked.sure or asked.possible, clock.left.seconds
         verdict = UNKNOWN if there is None else asked.ask(there.scene, sure, left or math.inf)
         take(known, factor, verdict.answer)
+        lowered += bool(verdict.answer)
         if verdict.answer:
-            _lower(asked, known, near)
-        slow = verdict.answer and known.high > before / near**FASTER
+            _lower(asked, known, near, asked.near, FEW if lowered == OFTEN else 0)
+            _lower(asked, known, near, asked.likely)
+        slow = verdict.answer and known.high > before / near ** (FASTER * FASTER)
         step = min(step**FASTER, REACH) if slow else near
 
 
-def _lower(asked: FeasibilityQuestions, known: FactorBracket, near: float) -> None:
-    """Lower the factor that is known to suffice to what known designs need, by halves."""
-    assert asked.likely is not None
+def _lower(
+    asked: FeasibilityQuestions,
+    known: FactorBracket,
+    near: float,
+    judge: Possible[Any] | None,
+    most: float = math.inf,
+) -> None:
+    """Lower the factor that is known to suffice by halves, with at most so many questions."""
     low = max(1.0, known.low)
-    while known.high > low * near * (1.0 + NEGLIGIBLE) and not asked.clock.over:
-        factor = between(low, known.high)
-        there = asked.edited(known.at(factor))
-        if there is not None and asked.ask(there.scene, asked.likely).answer:
+    while judge is not None and known.high > low * near * (1.0 + NEGLIGIBLE) and most > 0:
+        factor, most = between(low, known.high), most - 1
+        there = None if asked.clock.over else asked.edited(known.at(factor))
+        if there is not None and asked.ask(there.scene, judge).answer:
             known.high = factor
         else:
             low = factor
@@ -406,8 +418,6 @@ def _checked_remedy(
     word, closer = _less(asked, known, there, kind, last), list(CLOSER)
     while word == "feasible" and kind not in EACH and closer:
         before = known.high
-        if asked.likely is not None and not known.sure:  # what stayed open is possible
-            known.low, known.sure = 1.0, True
         narrow(asked, known, closer[0], sharp)
         closer = closer[1:] if known.high == before or asked.likely is None else closer
         there = _edits_as_written(asked, known) or there
@@ -436,7 +446,7 @@ def _less(
     """Verdict, in one word, on moves taken back a little, together or each of them."""
     if known.stepped:
         return "infeasible" if known.sure else "undecided"
-    if known.excess or last is not None and last.over:
+    if known.excess or last is not None and last.over or asked.near and not known.sure:
         return "undecided"
     moved = [k for k, move in enumerate(there.places) if move.switch is None]
     each = moved if kind in EACH else [None]

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
+from gearopt.formulations.drive.train import Train
 from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Remedies
@@ -34,7 +35,7 @@ from gearopt.scenes.explaining.engine import (
 )
 from gearopt.scenes.explaining.moves import DUTY, LIMIT, Move
 from gearopt.scenes.explaining.numbers import Number, apart, numbers, one_at
-from gearopt.scenes.explaining.possible import Verdict, of_status
+from gearopt.scenes.explaining.possible import Possible, Verdict, of_status
 
 USUAL_SECONDS = 60.0  # budget of all; with more, what follows is allowed in proportion
 TRANSMITTED = (("duty", "power"), ("duty", "torque"))
@@ -42,10 +43,10 @@ TRANSMITTED = (("duty", "power"), ("duty", "torque"))
 CONFLICT_SECONDS, CONFLICT_SECONDS_BESIDE_REMEDIES, CONFLICT_SECONDS_LATER = 1.5, 0.6, 1.5
 # s, at most, for a first number that helps, for the others then, and for one question
 ROUGH_SECONDS, OTHERS_SECONDS, QUESTION_SECONDS = 8.0, 4.0, 2.0
-LAST_SECONDS = 20.0  # s, at most, for whether a little less than what is proposed suffices
+LAST_SECONDS = 12.0  # s, at most, for whether a little less than what is proposed suffices
 FARTHEST_FACTOR, LAST_FACTOR = 3.0, 100.0  # of a remedy of use; of one, where there is none
 SHARE_OF_TIME = 0.4  # at most, of the time that is left, for each of these
-SHARPEN_SECONDS, CHOICE_SECONDS = 10.0, 4.0  # s, at most, to make them sharper, and for choices
+SHARPEN_SECONDS, CHOICE_SECONDS = 9.0, 4.0  # s, at most, to make them sharper, and for choices
 CHOSEN = (DISTANCE, "sum_of_centre_distances", "helix_angle", "pinion_shift", "sum")
 MODES = ("bending", "contact")
 SAFETIES = tuple(f"minimum_{mode}_safety" for mode in MODES)
@@ -82,14 +83,17 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
             return of_status(status(other)).answer
         return any_possible(case, [t for n in other.counts for t in trains(other.held(n))])
 
-    def like(other: Scene) -> bool:
-        return any(map(case.like, (t for n in other.counts for t in trains(other.held(n)))))
+    def some(judge: Callable[[Train], bool]) -> Possible[Scene]:
+        def possible(other: Scene, clock: Clock) -> Verdict:
+            return Verdict(any(judge(t) for n in other.counts for t in trains(other.held(n))))
+
+        return possible
 
     asked = FeasibilityQuestions(scene, lambda other, clock: Verdict(works(other)), clock)
     longer = replace(case, seconds=patience * LAST_SECONDS)
     asked.sure = lambda other, clock: Verdict(works(other, longer))
     if scene.teeth is not None and not any(map(scene.choosing, scene.stage_tables)):
-        asked.likely = lambda other, clock: Verdict(like(other))
+        asked.likely, asked.near = some(case.like), some(case.near)
     turns = _Turns(soon(ROUGH_SECONDS), lambda: soon(OTHERS_SECONDS), asked)
     ways = singles(asked, turns.until(_groups(scene, known, asked)), sharpen)
     of_planets = soon(CHOICE_SECONDS)

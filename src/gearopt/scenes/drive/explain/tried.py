@@ -1,6 +1,7 @@
 """Whether an impossible drive is possible with some numbers moved."""
 
-from collections.abc import Iterator, Sequence
+import itertools
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import field, replace
 
 from gearopt.formulations.drive import continuous_sizing
@@ -22,6 +23,7 @@ from gearopt.scenes.explaining.possible import Verdict, of_status
 
 SECONDS = 2.0  # at most, for one question
 LIKE = 2  # known designs whose teeth are tried
+NEAR = 0.7  # s, at most, for a drive of given pinions
 WHOLE, FEW = 0.7, 0.1  # parts of them, for a rated drive and for one of few pinions
 
 
@@ -75,12 +77,14 @@ class Case:
         tried = self.known[:LIKE] if len(train.stages) > 1 else ()
         like = [one for teeth in tried for one in _of_teeth(train, teeth)]
         few = _widest(train), _of_pinion(train, 0), _of_pinion(train, -1)
-        parts = (*((one, FEW) for one in like), (train, WHOLE), *((one, FEW) for one in few))
+        parts = (train, WHOLE), *((one, FEW) for one in few)
+        if self._any(like, FEW * self.seconds):
+            return True
         for narrower, part in parts:
             seconds = part * self.clock.within(self.seconds)
             teeth = any_train(narrower, seconds, self.clock.watch, self.shelf)
             if teeth:
-                self.known[:] = [teeth, *(other for other in self.known if other != teeth)]
+                self._keep(teeth)
                 return True
             if narrower is train and teeth is not None:
                 return False
@@ -89,11 +93,29 @@ class Case:
 
     def like(self, train: Train) -> bool:
         """Return whether teeth of designs that are known make a drive possible."""
-        for teeth in self.known[:LIKE]:
-            for narrower in _of_teeth(train, teeth):
-                if any_train(narrower, self.clock.within(FEW), self.clock.watch, self.shelf):
-                    return True
+        like = (one for teeth in self.known[:LIKE] for one in _of_teeth(train, teeth))
+        return self._any(like, FEW)
+
+    def near(self, train: Train) -> bool:
+        """Return whether teeth of known designs, their pinions or extreme ones make it possible."""
+        known = (tuple(z for z, _ in teeth) for teeth in self.known[:LIKE])
+        ends = ((s.pinion_teeth[1] or s.pinion_teeth[0], s.pinion_teeth[0]) for s in train.stages)
+        pinions = dict.fromkeys((*known, *itertools.product(*ends)))
+        drives = (one for each in pinions for one in _of_teeth(train, [(z, None) for z in each]))
+        return self.like(train) or self._any(drives, NEAR)
+
+    def _any(self, few: Iterable[Train], seconds: float) -> bool:
+        """Return whether one of some drives, which are searched quickly, is possible."""
+        for one in few:
+            teeth = any_train(one, self.clock.within(seconds), self.clock.watch, self.shelf)
+            if teeth:
+                self._keep(teeth)
+                return True
         return False
+
+    def _keep(self, teeth: Teeth) -> None:
+        """Note teeth of a design, as those that are known last."""
+        self.known[:] = [teeth, *(other for other in self.known if other != teeth)]
 
     def teeth(self, train: Train) -> Teeth | None:
         """Return the teeth of some train of a drive, (): there is none; None: not known."""
@@ -150,14 +172,16 @@ def _of_pinion(train: Train, end: int) -> Train:
     return replace(train, stages=tuple(stages))
 
 
-def _of_teeth(train: Train, teeth: Teeth) -> Iterator[Train]:
-    """Yield the drive of these teeth alone, where every stage may have them."""
+def _of_teeth(train: Train, teeth: Sequence[tuple[int, int | None]]) -> Iterator[Train]:
+    """Yield the drive of these teeth alone, where every stage may have them; None: any wheel."""
     stages = []
     for stage, pair in zip(train.stages, teeth, strict=False):
-        for z, (low, high) in zip(pair, (stage.pinion_teeth, stage.wheel_teeth), strict=True):
-            if z < low or high is not None and z > high:
+        ends = [stage.pinion_teeth, stage.wheel_teeth]
+        for k, z in enumerate(pair):
+            low, high = ends[k]
+            if z is not None and (z < low or high is not None and z > high):
                 return
-        ends = [(z, z) for z in pair]
+            ends[k] = ends[k] if z is None else (z, z)
         stages.append(replace(stage, pinion_teeth=ends[0], wheel_teeth=ends[1]))
     if len(teeth) == len(train.stages):
         yield replace(train, stages=tuple(stages))
