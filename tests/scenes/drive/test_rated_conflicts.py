@@ -1,6 +1,7 @@
 """Impossible rated drives: what excludes each other, and what would make them possible."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from impossible_drives import has_a_design, some_file
@@ -15,6 +16,8 @@ from gearopt.scenes.drive.explain.rated_conflict import _Filter, conflict
 from gearopt.scenes.drive.explain.requirements import requirements, without
 from gearopt.scenes.drive.explain.tried import Case
 from gearopt.scenes.reading.load import load
+
+ELEVATOR = Path(__file__).parents[3] / "problems" / "elevator_by_both.toml"
 
 
 def found_of(scene):
@@ -192,3 +195,18 @@ def test_a_stage_like_the_last_is_a_remedy_that_a_file_can_hold():
     assert found.conflict == ("stage_ratio_high[1]",)
     (more,) = (r for r in found.remedies if r.what == "stages")
     assert gearopt.solve(tables, more.edits).value is not None
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("key", "asked"), [("minimum_contact_safety", 6), ("minimum_bending_safety", 40)]
+)
+def test_a_safety_factor_one_step_nearer_to_what_was_asked_is_impossible(key, asked):
+    """By a complete search of its own: between are hundreds of steps that drives suffice for."""
+    impossible = {f"rating.{key}": asked}
+    found = gearopt.explain(ELEVATOR, impossible, budget=Budget(seconds=120.0))
+    (change,) = next(r.changes for r in found.remedies if r.changes[0].key == f"rating.{key}")
+    most = float(change.write)
+    for safety, status in ((most, "optimal"), (1.001 * most, "infeasible")):
+        answer = gearopt.solve(ELEVATOR, {change.key: safety}, remedies=False)
+        assert answer.status == status

@@ -31,7 +31,7 @@ LAST = 1.5  # times the time to make numbers sharper, for whether less suffices
 SHARE_OF_TIME = 0.4  # at most, of the time that is left, to make numbers sharper in given seconds
 SECANTS = 24
 FASTER = 4.0  # power by which steps grow as long as there are designs
-OFTEN, FEW = 3, 5  # after so many designs for less, questions whether ones like them suffice
+OFTEN, FEW = 4, 5  # after so many designs for less, questions whether ones like them suffice
 NO_PROGRESS = 1e-2  # of that logarithm: what falls by less in a step does not fall
 NEGLIGIBLE = 1e-9  # of a factor
 LOG_TOLERANCE = 2e-5  # of the logarithm of a utilisation that counts as 1
@@ -368,7 +368,7 @@ def _narrow_by_designs(
         if verdict.answer:
             _lower(asked, known, near, asked.near, FEW if lowered == OFTEN else 0)
             _lower(asked, known, near, asked.likely)
-        slow = verdict.answer and known.high > before / near ** (FASTER * FASTER)
+        slow = verdict.answer and known.high > before / near ** (2.0 * FASTER)
         step = min(step**FASTER, REACH) if slow else near
 
 
