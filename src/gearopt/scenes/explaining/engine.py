@@ -368,8 +368,8 @@ def _narrow_by_designs(
         if verdict.answer:
             _lower(asked, known, near, asked.near, FEW if lowered == OFTEN else 0)
             _lower(asked, known, near, asked.likely)
-        slow = verdict.answer and known.high > before / near ** (2.0 * FASTER)
-        step = min(step**FASTER, REACH) if slow else near
+        slow = lowered > OFTEN or known.high > before / near ** (2.0 * FASTER)
+        step = min(step**FASTER, REACH) if verdict.answer and slow else near
 
 
 def _lower(
