@@ -71,10 +71,11 @@ class FeasibilityQuestions:
     excess: that of the file itself, where it is known. lower_bounds: whether a factor that is
     proven too small is told as a bound. far: the factor, beyond a floor, up to which is tried.
     likely: whether known designs suffice for a changed file, asked as a factor is narrowed once a
-    no was dear; only yes counts. near: the same, of designs like them. sufficient: how many groups
-    of numbers are known to suffice. apply: makes the file with numbers moved. halving: seconds of a
-    question while a change is halved, and once one stayed open, of which so many doubts may;
-    ladder: factors tried where the farthest stays open. open: keys of numbers without any factor.
+    no was dear; only yes counts. near: the same, of designs like them; kin: of designs like the
+    last one, narrowed by it to the end. sufficient: how many groups of numbers are known to
+    suffice. apply: makes the file with numbers moved. halving: seconds of a question while a change
+    is halved, and once one stayed open, of which so many doubts may; ladder: factors tried where
+    the farthest stays open. open: keys of numbers without any factor.
     """
 
     scene: Any
@@ -86,6 +87,7 @@ class FeasibilityQuestions:
     lower_bounds: bool = False
     likely: Possible[Any] | None = None
     near: Possible[Any] | None = None
+    kin: Possible[Any] | None = None
     far: float = REACH
     halving: tuple[float, float] = (math.inf, math.inf)
     doubts: int = DOUBTS
@@ -367,6 +369,7 @@ def _narrow_by_designs(
         lowered += bool(verdict.answer)
         if verdict.answer:
             _lower(asked, known, near, asked.near, FEW if lowered == OFTEN else 0)
+            _lower(asked, known, near, asked.kin if lowered >= OFTEN else None)
             _lower(asked, known, near, asked.likely)
         slow = lowered > OFTEN or known.high > before / near ** (2.0 * FASTER)
         step = min(step**FASTER, REACH) if verdict.answer and slow else near
@@ -446,13 +449,15 @@ def _less(
     """Verdict, in one word, on moves taken back a little, together or each of them."""
     if known.stepped:
         return "infeasible" if known.sure else "undecided"
-    if known.excess or last is not None and last.over or asked.near and not known.sure:
+    if known.excess:
         return "undecided"
     moved = [k for k, move in enumerate(there.places) if move.switch is None]
     each = moved if kind in EACH else [None]
     tried = [less(asked.scene, there, SLACK_TRIED, k) for k in each]
     if kind not in EACH and _is_excluded(asked, known, tried[0]):
         return "infeasible"
+    if last is not None and last.over or asked.near and not known.sure:
+        return "undecided"
     words = {WORDS[_possible(asked, scene)] for scene in tried}
     return "mixed" if len(words) > 1 else next(iter(words), "")
 
@@ -525,8 +530,11 @@ def of_use(asked: FeasibilityQuestions, groups: Sequence[Group]) -> list[Group]:
     Of numbers that are easier the farther they move, whether in steps or not.
     """
     far = [(move, _farthest(asked, move)) for group in groups for move in group.numbers]
-    if len(groups) < 2 or asked.possible_with(tuple(far)) is False:
-        return list(groups) if len(groups) < 2 else []
+    verdict = asked.possible_with(tuple(far)) if len(groups) > 1 else None
+    if verdict is None:  # what all cannot decide is decided of each alone
+        return list(groups)
+    if not verdict:
+        return []
     middle = len(groups) // 2
     return of_use(asked, groups[:middle]) + of_use(asked, groups[middle:])
 

@@ -46,7 +46,7 @@ ROUGH_SECONDS, OTHERS_SECONDS, QUESTION_SECONDS = 8.0, 4.0, 2.0
 LAST_SECONDS = 12.0  # s, at most, for whether a little less than what is proposed suffices
 FARTHEST_FACTOR, LAST_FACTOR = 3.0, 100.0  # of a remedy of use; of one, where there is none
 SHARE_OF_TIME = 0.4  # at most, of the time that is left, for each of these
-SHARPEN_SECONDS, CHOICE_SECONDS = 9.0, 4.0  # s, at most, to make them sharper, and for choices
+SHARPEN_SECONDS, CHOICE_SECONDS = 30.0, 4.0  # s, at most, to make them sharper, and for choices
 CHOSEN = (DISTANCE, "sum_of_centre_distances", "helix_angle", "pinion_shift", "sum")
 MODES = ("bending", "contact")
 SAFETIES = tuple(f"minimum_{mode}_safety" for mode in MODES)
@@ -93,7 +93,7 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
     longer = replace(case, seconds=patience * LAST_SECONDS)
     asked.sure = lambda other, clock: Verdict(works(other, longer))
     if scene.teeth is not None and not any(map(scene.choosing, scene.stage_tables)):
-        asked.likely, asked.near = some(case.like), some(case.near)
+        asked.likely, asked.near, asked.kin = map(some, (case.like, case.near, case.kin))
     turns = _Turns(soon(ROUGH_SECONDS), lambda: soon(OTHERS_SECONDS), asked)
     ways = singles(asked, turns.until(_groups(scene, known, asked)), sharpen)
     of_planets = soon(CHOICE_SECONDS)

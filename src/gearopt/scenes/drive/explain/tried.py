@@ -104,6 +104,11 @@ class Case:
         drives = (one for each in pinions for one in _of_teeth(train, [(z, None) for z in each]))
         return self.like(train) or self._any(drives, NEAR)
 
+    def kin(self, train: Train) -> bool:
+        """Return whether pinions of the design that is known last make a drive possible."""
+        known = [[(z, None) for z, _ in teeth] for teeth in self.known[:1]]
+        return self._any((one for teeth in known for one in _of_teeth(train, teeth)), NEAR)
+
     def _any(self, few: Iterable[Train], seconds: float) -> bool:
         """Return whether one of some drives, which are searched quickly, is possible."""
         for one in few:
