@@ -352,7 +352,7 @@ def sentences_on_parts(result: Result, measures: Measures) -> list[str]:
     if result.status == "infeasible" and "least_violation" in result.proof:
         sentences.append("This holds even with real-valued teeth and modules.")
     for part in result.parts:
-        alike = part.objective["name"] == result.objective["name"]
+        alike = part.objective.get("name") == result.objective.get("name")
         if part.name in ("sizing", "apart") and alike and result.status == "optimal":
             sentences += _other_way(result, part)
         if part.name == "sizing" and result.status == "limit" and result.value is None:
