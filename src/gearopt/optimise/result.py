@@ -209,8 +209,16 @@ class Result:
     @property
     def feasible(self) -> bool:
         """Return whether there is a design that meets all limits, as the certificate says."""
+        return bool(self.design) and self.meets_limits
+
+    @property
+    def meets_limits(self) -> bool:
+        """Return whether its certificate says that all limits are met.
+
+        Also of a part, whose design the whole holds.
+        """
         excess = self.certificate.get("feasibility")
-        return bool(self.design) and excess is not None and excess <= FEASIBLE
+        return excess is not None and excess <= FEASIBLE
 
     def __repr__(self) -> str:
         return str(shown("lines", self))

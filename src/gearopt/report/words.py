@@ -251,7 +251,7 @@ def number(value: Any) -> str:
 def certainty(result: Result) -> tuple[str, str]:
     """The status in words, and its colour."""
     words, colour = VERDICTS[result.status]
-    if result.status == "evaluated" and not result.feasible:
+    if result.status == "evaluated" and not result.meets_limits:
         words, colour = "evaluated, a limit is exceeded", "red"
     if result.status == "evaluated" and not result.limits:
         words = "evaluated"

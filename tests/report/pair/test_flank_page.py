@@ -12,7 +12,7 @@ import gearopt
 from gearopt.report.kinds.pair import PAGES, contact_of
 from gearopt.report.kinds.pair.flank import MEASURED, SOFTER, answers, flank_of, section
 from gearopt.report.measures import INCH, METRIC
-from gearopt.report.pages.result import page, tables
+from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.terminal import show
 from gearopt.scenes.pair import KIND
 
@@ -76,6 +76,29 @@ def test_pictures_and_files_hold_the_flank(solved):
 def test_the_page_is_made_in_either_system(solved, measures):
     html = page(solved("helical_pair"), "gearopt solve x.toml", measures)
     assert "Contact over the flank" in html and "Teeth in mesh" not in html
+
+
+RATED = {  # spur gears with crowned flanks, rated, whose relief is searched
+    "gearopt": 1,
+    "kind": "pair",
+    "duty": {"power": "5 kW", "input_speed": "1450 rpm"},
+    "gears": {"treatment": "carburised"},
+    "stage": [{"module": "3 mm", "pinion_teeth": 22, "wheel_teeth": 40, "face_width": "30 mm"}],
+    "rating": {"life": "1000 h", "quality": 8},
+    "flank": {"slices": 11, "crowning": "5 um"},
+    "sharing": {"positions": 12, "coupling": "none", "level": "profile + Sainsot"},
+    "relief": {"amount": ["0 um", "20 um"], "length": [0.2, 0.5]},
+}
+
+
+def test_a_searched_relief_of_rated_gears_has_a_page_that_calls_the_gears_safe():
+    result = gearopt.solve(RATED, budget=gearopt.Budget(evaluations=8))
+    (gears,) = result.parts
+    assert max(gears.limits.values()) < 1.0 and gears.objective == {}
+    made = {section.heading: section for section in sections(result)}
+    states = made["What is proven, and how"].tables[0].rows[0]
+    assert states[1:] == ["feasible, not proven optimal", "evaluated, all limits met"]
+    assert "All required safety factors are met" in printed(result)
 
 
 @pytest.mark.slow
