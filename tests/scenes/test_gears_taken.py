@@ -472,6 +472,13 @@ def test_python_goes_the_same_way(kept, drive):
         packing.stage().pair()
 
 
+def test_what_the_other_file_states_is_not_called_a_default(drive):
+    """The drive has an overload factor, no reliability."""
+    for said in (drive.report, drive.stage(2).rate().report):
+        (unstated,) = (words for words in said["assumptions"] if words.startswith("Not in the"))
+        assert "reliability 99 % (default)" in unstated and "overload factor" not in unstated
+
+
 def test_a_kept_result_is_rated_as_it_is(kept, drive, here):
     told = here("rate", kept / "drive.json", "--json")
     assert told.returncode == 0, told.stderr

@@ -45,6 +45,12 @@ class Table(BaseModel):
     """A table of a problem file: frozen, unknown keys refused."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
+    _followed: frozenset[str] = frozenset()  # keys that the file whose gears it takes has of it
+
+    @property
+    def stated(self) -> set[str]:
+        """Return the keys that the file has, or the file whose gears it takes."""
+        return self.model_fields_set | self._followed
 
 
 @dataclass(frozen=True)

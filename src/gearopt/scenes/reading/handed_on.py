@@ -16,7 +16,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 from gearopt.frozen import dataclass
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.changes import set_at
-from gearopt.scenes.reading.fields import Opened, Reads, refuse
+from gearopt.scenes.reading.fields import Opened, Reads, Table, refuse
 from gearopt.scenes.reading.linked_files import Input
 from gearopt.scenes.reading.mistakes import lookup, table_of
 from gearopt.scenes.reading.toml_writing import short
@@ -220,7 +220,7 @@ def _of_handed(
 
 
 def _only(held: Any, data: Any) -> None:
-    """Let tables count as set what the file itself has in them."""
+    """Let tables count as set what the file itself has in them; what follows is stated, too."""
     if isinstance(held, tuple):
         each = data if isinstance(data, list) else []
         for k, row in enumerate(held):
@@ -229,6 +229,8 @@ def _only(held: Any, data: Any) -> None:
         content = data if isinstance(data, dict) else {}
         for name in type(held).model_fields:
             _only(getattr(held, name), content.get(name))
+        if isinstance(held, Table):
+            held._followed = frozenset(held.model_fields_set)
         object.__setattr__(held, "__pydantic_fields_set__", {*content} & {*type(held).model_fields})
 
 

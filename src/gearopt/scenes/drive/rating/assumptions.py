@@ -163,7 +163,7 @@ def pinions_in_box(scene: Scene) -> list[str]:
 
 def _unstated(asked: RatingTable, by_agma: bool, by_iso: bool) -> list[str]:
     """Return defaults that a rating takes where the file says nothing."""
-    given, iso = asked.model_fields_set, asked.iso6336.model_fields_set
+    given, iso = asked.stated, asked.iso6336.stated
     usual = Practice()
     rows = (
         (True, "overload_factor" in given, "overload factor 1"),
