@@ -252,7 +252,6 @@ CONTRADICTIONS = [
     ("dynamics", "mesh.teeth", 40, ""),
     ("dynamics", "mesh.speed", "3000 rpm", "rpm"),
     ("dynamics", "mesh.pressure_angle", "25 deg", "20 deg"),
-    ("dynamics", "mesh.wave", "constant", '"pair"'),
     ("dynamics", "mesh.pair", "other.toml", '"drive.json"'),
     ("drive", "duty.power", "18 kW", "15 kW"),
     ("drive", "stages", 2, "not given"),
@@ -272,6 +271,19 @@ def test_what_contradicts_the_gears_is_refused_by_name(kept, kind, key, value, t
     assert error.rule.startswith(f"contradicts {of}, whose gears this file takes: it is ")
     assert there in error.rule and error.remedy == "Remove it"
     assert (error.fix.action, error.fix.key) == ("remove", error.key)
+
+
+def test_teeth_with_relief_excite_a_mean_stiffness_by_their_error_under_load(kept):
+    """The frequencies are those of the changing stiffness, whose mean is kept."""
+    plain = gearopt.solve(DYNAMICS).design["equilibrium"]
+    mesh = {"wave": "constant", "transmission_error": "pair"}
+    result = gearopt.solve(DYNAMICS | {"mesh": mesh})
+    same(result.design["equilibrium"], plain)
+    said = " ".join(result.report["assumptions"])
+    assert "The mesh stiffness is the mean over a base pitch of the normal force over" in said
+    assert "as the mesh stiffness is constant, it stands for its variation, too" in said
+    half = gearopt.solve(DYNAMICS | {"mesh": mesh | {"stiffness": "100 kN/mm"}})
+    assert half.design["equilibrium"]["mean_stiffness_N_per_mm"] == 1e5
 
 
 AGREEING = [

@@ -46,7 +46,7 @@ def rotors_of(source: Input, number: int | None, ask: Ask) -> HandedOn:
         "pair": source,
     }
     rows = ((table, name, v) for table, values in tables.items() for name, v in values.items())
-    follows = {(table, name): value for table, name, value in rows}
+    follows = {(table, name): value for table, name, value in rows if name != "wave"}
     balance = torque * stage.wheel_teeth / stage.pinion_teeth
     follows["wheel", "torque"] = _of(balance, "N mm", "torque")
     return HandedOn(of, tables, follows, lambda place: True)

@@ -61,13 +61,15 @@ class Scene(ProblemFile):
         if self.pinion.torque is None or self.pinion.torque.value <= 0.0:
             rule = "drives the pair, counter-clockwise: a torque above zero"
             raise refuse(rule, at=("pinion", "torque"))
+        averaged = mesh.wave == "constant" and mesh.pair is not None
         for name in NEEDED[mesh.wave]:
-            if not getattr(mesh, name):
+            if not (getattr(mesh, name) or averaged):
                 rule = f'is missing: wave = "{mesh.wave}" needs it'
                 raise refuse(rule, at=("mesh", name))
         idle = set(SHAPED) - set(NEEDED[mesh.wave])
         idle -= {"sines"} if mesh.wave == "fourier" else set()
-        idle -= {"pair"} if mesh.transmission_error == "pair" else set()
+        used = averaged and mesh.stiffness is None or mesh.transmission_error == "pair"
+        idle -= {"pair"} if used or self.gears is not None else set()
         for name in idle & mesh.model_fields_set:
             rule = f'changes nothing of wave = "{mesh.wave}"'
             raise refuse(rule, at=("mesh", name), action="remove")

@@ -20,7 +20,7 @@ from gearopt.formulations.dynamics.standard_factors import Toothing
 from gearopt.formulations.pair.design import ContactLoad, PairContact, PairRelief
 from gearopt.formulations.pair.flank_design import FlankContact, FlankLoad
 from gearopt.optimise.typed import typed
-from gearopt.physics.motion.stiffness_wave import Wave
+from gearopt.physics.motion.stiffness_wave import Wave, constant
 from gearopt.scenes.dynamics.handed_on import rotors_of
 from gearopt.scenes.dynamics.scene import Scene, wave_of
 from gearopt.scenes.reading.ask import Ask
@@ -53,7 +53,8 @@ class OfTeeth(NamedTuple):
 def of_teeth(scene: Scene, ask: Ask) -> OfTeeth:
     """Return stiffness, error and teeth of the file of [mesh] pair, with its relief.
 
-    The stiffness is the file's own where its wave is not "pair".
+    The stiffness is the file's own where its wave is not "pair"; a constant one that the file does
+    not give is the mean of that.
 
     SceneError where that pair has other teeth than the file.
     """
@@ -73,9 +74,11 @@ def of_teeth(scene: Scene, ask: Ask) -> OfTeeth:
         curve = load.transmission_error_mm if quasistatic else unloaded
         error = error_harmonics(contact, curve, ERROR_HARMONICS)
         said.append(_of_error(str(named), quasistatic, load, max(curve) - min(curve)))
-    if scene.mesh.wave == "pair":
+    averaged = scene.mesh.wave == "constant" and scene.mesh.stiffness is None
+    if averaged or scene.mesh.wave == "pair":
         wave = of_contact(contact, load, unloaded)
-        said += _assumed(str(named), load, force, flanks.modified)
+        wave = constant(wave.mean) if averaged else wave
+        said += _assumed(str(named), load, force, flanks.modified, averaged, any(unloaded))
     else:
         wave = wave_of(scene.mesh)
     gears = drive_design(design).stages[0].pair
@@ -135,11 +138,16 @@ def _others(scene: Scene, named: Input, ask: Ask) -> Iterator[str]:
             yield f"[{table}] {name} is {is_its}"
 
 
-def _assumed(name: str, load: Load, force: float, relieved: bool) -> Iterator[str]:
-    """Yield at which load the stiffness is taken."""
+def _assumed(
+    name: str, load: Load, force: float, relieved: bool, averaged: bool, less: bool
+) -> Iterator[str]:
+    """Yield at which load the stiffness, or its mean, is taken."""
     flanks = "with its relief" if relieved else "whose flanks have no relief"
+    of = "the mean over a base pitch of " * averaged
+    rest = ", less the gaps of the unloaded teeth," * less
     yield (
-        f"The mesh stiffness is the normal force over the transmission error of {name}, {flanks}, "
+        f"The mesh stiffness is {of}the normal force over the transmission error{rest} of {name}, "
+        f"{flanks}, "
         f"at {100.0 * load.load:.4g} % of that file's torque, and the same at any force."
     )
     if not math.isclose(load.normal_force_N, force, rel_tol=NEAR):

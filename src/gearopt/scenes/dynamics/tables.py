@@ -72,7 +72,8 @@ class MeshTable(Table):
         "constant", description="Shape of the mesh stiffness over a period"
     )
     stiffness: Annotated[Quantity | None, quantity("stiffness", "200 kN/mm")] = Field(
-        None, description="Mean mesh stiffness"
+        None,
+        description="Mean mesh stiffness; of a constant wave by default the mean of that of `pair`",
     )
     depth: Annotated[Fraction | None, number(0.5, 0, Fraction(3, 2))] = Field(
         None, description="Rectangle or trapezoid: (maximum - minimum)/mean of the stiffness"
