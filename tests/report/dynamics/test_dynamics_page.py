@@ -6,6 +6,7 @@ import numpy as np
 
 from gearopt.formulations.dynamics.design import (
     Chosen,
+    DynamicErrors,
     DynamicsDesign,
     Equilibrium,
     Response,
@@ -92,6 +93,32 @@ def test_speeds_are_told_where_largest_and_where_two():
         ("repeats after 2 periods", "repeats after 2 periods"),
         ("unstable", "teeth part"),
     ]
+
+
+def test_one_motion_is_told_of_rising_speed():
+    """Digits beyond those shown do not make a second motion; 1,000 rpm is an end of the range."""
+    rms, falling = (0.04, *FOUND.rms_mm[1:]), (0.0400001, *FOUND.rms_mm[1:])
+    worst = told(replace(FOUND, rms_mm=rms, falling_rms_mm=falling)).words[0]
+    assert "is largest at 1,000 rpm, an end of the range: 40" in worst and "falls" not in worst
+
+
+def test_teeth_with_errors_are_told_by_their_dynamic_transmission_error():
+    errors = DynamicErrors(
+        rms_mm=(0.003, 0.001, 0.001, 0.001, None),
+        peak_to_peak_mm=(0.009, 0.002, 0.002, 0.002, None),
+        highest_mm=(0.021, 0.016, 0.016, 0.016, None),
+    )
+    loads = tuple((4000.0 + k, 3000.0, 3000.0, 3000.0, None) for k in range(3))
+    rows = dict.fromkeys(("errors", "dynamic_factor"), errors.rms_mm) | {"loads_N": loads}
+    section = told(replace(FOUND, transmission_error=errors, falling_rms_mm=(), **rows))
+    assert section.words[0] == (
+        "The RMS of the dynamic transmission error about its mean is largest at 1,000 rpm, an end "
+        "of the range: 3 µm, peak to peak 9 µm, maximum 21 µm; the tooth load is up to 4,000 N."
+    )
+    assert section.figures[0].data[0]["y"] == [3.0, 1.0, 1.0, 1.0, None]
+    table = section.tables[0]
+    assert table.heads[1] == "dynamic transmission error, RMS about the mean [µm]"
+    assert len(table.heads) == len(table.rows[0])
 
 
 def test_a_plot_over_speed_has_gaps_marks_and_the_unstable_range():

@@ -41,6 +41,28 @@ class ToothLoad:
 
 
 @dataclass(frozen=True, kw_only=True)
+class DynamicError:
+    """Transmission error in a motion: that of the unloaded teeth and the deformation together.
+
+    rms: about its mean. values: at the times of the motion.
+    """
+
+    rms_mm: float
+    peak_to_peak_mm: float
+    highest_mm: float
+    values_mm: Columns
+
+
+@dataclass(frozen=True, kw_only=True)
+class DynamicErrors:
+    """The same at speeds, None where a motion grows for ever."""
+
+    rms_mm: Gaps
+    peak_to_peak_mm: Gaps
+    highest_mm: Gaps
+
+
+@dataclass(frozen=True, kw_only=True)
 class StandardFactors:
     """K_v of ISO 6336-1, method B, and of AGMA 2001-D04, None beyond the curve.
 
@@ -63,6 +85,7 @@ class Response:
     the deformation's spectrum over the second half. jammed: when both flanks are first pressed at
     once, as the axes came together; None: never. steady: until when roundings stay below the error
     asked; None: to the end. tooth_load: of the second half; load: on the teeth at every time.
+    transmission_error: of the second half; None where unloaded teeth have none.
     """
 
     method: str
@@ -83,6 +106,7 @@ class Response:
     steady_ms: float | None = None
     tooth_load: ToothLoad | None = None
     load_N: Columns = ()
+    transmission_error: DynamicError | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,7 +153,8 @@ class Speeds:
     teeth in contact. jammed: speeds at which both flanks are pressed at once, as the axes come
     together. harmonics (orders, speeds): amplitudes. loads (3, speeds): maximum, minimum and RMS of
     the tooth load. errors: estimated, of the deformation relative to its largest value; of motions
-    that do not repeat how much their RMS varies.
+    that do not repeat how much their RMS varies. transmission_error: None where unloaded teeth have
+    none.
     """
 
     teeth_part: bool
@@ -151,6 +176,8 @@ class Speeds:
     falling_dynamic_factor: Gaps = ()
     errors: Gaps = ()
     falling_errors: Gaps = ()
+    transmission_error: DynamicErrors | None = None
+    falling_transmission_error: DynamicErrors | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearopt.formulations.dynamics.design import Columns, Speeds
+from gearopt.formulations.dynamics.design import Columns, DynamicErrors, Speeds
 from gearopt.formulations.dynamics.motion.stability import bands
 from gearopt.formulations.dynamics.parts import columns, gaps
 from gearopt.formulations.dynamics.steady_motion import (
@@ -73,7 +73,16 @@ def over_speeds(
         falling_dynamic_factor=gaps([dynamic_factor(o.load, pair.load) for o in falling], 6),
         errors=gaps([o.error for o in rising], 3),
         falling_errors=gaps([o.error for o in falling], 3),
+        transmission_error=_errors(rising) if pair.error else None,
+        falling_transmission_error=_errors(falling) if pair.error and falling else None,
     )
+
+
+def _errors(motions: Sequence[Motion]) -> DynamicErrors:
+    """Return the transmission errors of motions."""
+    each = (gaps(values, 7) for values in zip(*(motion.lag for motion in motions), strict=True))
+    rms, height, most = each
+    return DynamicErrors(rms_mm=rms, peak_to_peak_mm=height, highest_mm=most)
 
 
 def passed(frequencies: Array) -> Array:

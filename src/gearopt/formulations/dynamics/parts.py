@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from gearopt.formulations.dynamics.design import (
     Columns,
+    DynamicError,
     Equilibrium,
     Gaps,
     Response,
@@ -25,6 +26,7 @@ from gearopt.formulations.dynamics.motion.stability import (
     stability_map,
 )
 from gearopt.formulations.dynamics.tooth_load import dynamic_factor, load_over, tooth_load
+from gearopt.formulations.dynamics.transmission_error import extent, lag_of
 from gearopt.formulations.pair.design import ContactLoad, PairContact, PairRelief
 from gearopt.formulations.pair.flank_design import FlankContact, FlankLoad
 from gearopt.optimise.clock import Clock
@@ -123,6 +125,7 @@ def response(
     states = simulated.motion.states
     load = load_over(pair, level, times[later:], states[later:])
     stiffness = pair.wave.value(pair.mesh_frequency * times)
+    lag = lag_of(pair, pair.mesh_frequency * times, delta)
     lines, amplitude = _spectrum(steady, times[1] - times[0])
     digits = max(7, 2 - math.floor(math.log10(error)))  # more than the error that is asked
     return Response(
@@ -149,6 +152,15 @@ def response(
             dynamic_factor=dynamic_factor(load, pair.load),
         ),
         load_N=columns(tooth_load(pair, level, states, stiffness), 6),
+        transmission_error=_error(lag, later, digits) if pair.error else None,
+    )
+
+
+def _error(lag: Array, later: int, digits: int) -> DynamicError:
+    """Return the transmission error of a motion, its extent from an index on."""
+    rms, height, most = extent(lag[later:])
+    return DynamicError(
+        rms_mm=rms, peak_to_peak_mm=height, highest_mm=most, values_mm=columns(lag, digits)
     )
 
 

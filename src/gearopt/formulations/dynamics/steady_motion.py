@@ -19,6 +19,7 @@ from gearopt.formulations.dynamics.motion.stability import UNSTABLE, largest, re
 from gearopt.formulations.dynamics.motion.timeline import timeline
 from gearopt.formulations.dynamics.parts import around, jammed, resting
 from gearopt.formulations.dynamics.tooth_load import Load, load_over
+from gearopt.formulations.dynamics.transmission_error import Lag, extent, lag_of
 from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
@@ -30,6 +31,7 @@ FASTEST_MODES, FOURIER_TIMES, MOST_HARMONICS = 3.0, 4, 512  # harmonics of a mot
 GUESSED = 40  # of one that parts, at most: its state is made exact afterwards
 STEPS_PER_PERIOD = 12.0  # of RK8 in a period of the fastest mode: 1e-6 of a motion
 FINER = 4  # times as many samples of a motion in contact for the load on its teeth
+FINEST_LAG = 16  # times as many for its transmission error
 ROUNDING, SAFETY = 1e-9, 2.0  # error at least; times the change by half the steps
 LOOKS, FINEST = 64, 16.0  # samples of a period of the mesh at least, and of the fastest mode
 RMS_JUMP = 0.3  # of its RMS by which a motion may differ from the one at the speed before
@@ -52,9 +54,9 @@ class Motion:
     """A motion at a speed: RMS of delta about its mean, least and largest delta [mm].
 
     amplitudes (ORDERS,) of the orders of the mesh frequency [mm]. repeats: after how many periods
-    of the mesh, 0: not within MOST_PERIODS. load: on the teeth. error: estimated, of delta relative
-    to its largest value; of a motion that does not repeat the range of the RMS of its quarters. A
-    motion that grows for ever has NaN for numbers.
+    of the mesh, 0: not within MOST_PERIODS. load: on the teeth; lag: its transmission error. error:
+    estimated, of delta relative to its largest value; of a motion that does not repeat the range of
+    the RMS of its quarters. A motion that grows for ever has NaN for numbers.
     jams: both flanks are pressed at once, as the axes came together. For the next speed: the state
     at phase 0, delta at LOOKS phases of each period, and its series.
     """
@@ -66,6 +68,7 @@ class Motion:
     repeats: int
     jams: bool
     load: Load
+    lag: Lag
     error: float
     state: Array
     delta: Array
@@ -139,6 +142,7 @@ def linear_motion(pair: MovingPair, level: str, contact: Contact) -> Motion:
     count = LOOKS * (2 * len(series.harmonics) // LOOKS + 1)
     passed = states(pair, level, series, FINER * count)
     times = np.arange(FINER * count + 1) / (FINER * count * series.frequency)
+    phases = np.arange(FINEST_LAG * count) / (FINEST_LAG * count)
     motion = Motion(
         series.rms,
         *series.extremes,
@@ -146,6 +150,7 @@ def linear_motion(pair: MovingPair, level: str, contact: Contact) -> Motion:
         1,
         bool(np.any(jammed(pair, level, passed))),
         load_over(pair, level, times, np.vstack([passed, passed[:1]])),
+        extent(lag_of(pair, phases, series.delta(phases.size))),
         contact.error,
         passed[0],
         series.delta(count)[:: count // LOOKS],
@@ -157,8 +162,8 @@ def linear_motion(pair: MovingPair, level: str, contact: Contact) -> Motion:
 def _growing(motion: Motion, jams: bool) -> Motion:
     """Record of a motion that grows for ever."""
     none, nothing = math.nan, np.full(ORDERS, math.nan)
-    bare = replace(motion, load=Load(none, none, none), amplitudes=nothing, error=none, jams=jams)
-    return replace(bare, rms=none, least=none, highest=none)
+    bare = replace(motion, load=Load(none, none, none), lag=Lag(none, none, none), jams=jams)
+    return replace(bare, rms=none, least=none, highest=none, amplitudes=nothing, error=none)
 
 
 def _apart(other: Array, delta: Array) -> float:
@@ -350,6 +355,7 @@ def _periodic_response(
         repeats=repeats,
         jams=motion.jammed is not None,
         load=load_over(pair, level, times, motion.states),
+        lag=extent(lag_of(pair, frequency * times[:-1], delta)),
         error=error,
         state=motion.states[-1],
         delta=delta[: (repeats or KEPT) * looks : finer],

@@ -3,6 +3,8 @@
 import math
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from gearopt.frozen import dataclass
 from gearopt.physics.motion.kinematics import KINEMATICS, Contact, Rest
 from gearopt.physics.motion.stiffness_wave import Wave
@@ -70,6 +72,12 @@ class MovingPair:
         """
         drive = sum(r.base_radius * r.torque / r.inertia for r in self.rotors)
         return self.mesh_mass * drive
+
+    def error_at(self, phase: Any) -> Any:
+        """Return the transmission error of unloaded teeth at phases of the mesh [mm]."""
+        angle = 2.0 * math.pi * np.multiply.outer(phase, np.arange(1, len(self.error) + 1))
+        real, imaginary = np.array(self.error, complex).real, np.array(self.error, complex).imag
+        return np.cos(angle) @ real - np.sin(angle) @ imaginary
 
     def contact(self, u: Any, v: Any) -> Contact:
         """Return the contact at displacements of the axes against each other [mm]."""

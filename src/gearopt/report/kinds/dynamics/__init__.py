@@ -1,5 +1,6 @@
 """A pair on moving axes: how it rests, moves, where it is unstable, and what vibrates least."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -8,6 +9,7 @@ import numpy as np
 
 from gearopt.formulations.dynamics.design import (
     OUT_OF_MESH,
+    DynamicErrors,
     DynamicsDesign,
     Response,
     Speeds,
@@ -28,6 +30,7 @@ from gearopt.report.measures import METRIC, Measures
 from gearopt.report.section import Section, Table, Tile, cell, names_and_values, percent
 from gearopt.report.words import amount, number
 
+SAME = 1e-3  # of an RMS by which motions of rising and falling speed are one
 TWO_MOTIONS = (
     0.02  # of an RMS by which rising and falling speeds differ where there are two motions
 )
@@ -40,6 +43,8 @@ NOT_USED = (
     "not used: those of the answer follow from its sizes."
 )
 HIGHEST = "highest δ, negative in compression"
+TRANSMISSION = "dynamic transmission error"
+EXTENT = ("RMS about the mean", "peak to peak", "maximum")
 BY_ISO, BY_AGMA = "by ISO 6336-1 (method B)", "by AGMA 2001-D04"
 ISO, AGMA = f"K_v {BY_ISO}", f"K_v {BY_AGMA}"
 
@@ -67,8 +72,8 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     if (moved := design.response) is not None:
         figures.append(
             Tile(
-                "deformation, peak to peak",
-                amount(moved.peak_to_peak_mm, "um", measures),
+                f"{_varying(moved)}, peak to peak",
+                amount((moved.transmission_error or moved).peak_to_peak_mm, "um", measures),
                 f"by {moved.method}, error {moved.error:.1e}",
             )
         )
@@ -77,6 +82,11 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
         figures.append(Tile("largest Floquet multiplier", number(design.stability.here), verdict))
     fastest = f"{rest.frequencies_Hz[-1]:,.0f} Hz"
     return [*figures, Tile("highest natural frequency", fastest, "at the mean stiffness")]
+
+
+def _varying(moved: Response | Speeds) -> str:
+    """What measures the vibration: of teeth without errors their deformation says the same."""
+    return "dynamic transmission error" if moved.transmission_error else "deformation"
 
 
 def _measure(result: Result) -> str:
@@ -99,8 +109,8 @@ def binding_limit(result: Result, measures: Measures = METRIC) -> str:
     at_rest = f"the mean load deforms the mesh by {amount(rest, 'um', measures)}"
     if moved is None:
         return at_rest
-    varies = amount(moved.peak_to_peak_mm, "um", measures)
-    return f"{at_rest}; in motion the deformation varies by {varies}"
+    varies = amount((moved.transmission_error or moved).peak_to_peak_mm, "um", measures)
+    return f"{at_rest}; in motion the {_varying(moved)} varies by {varies}"
 
 
 def warns(result: Result, measures: Measures = METRIC) -> Sequence[str]:
@@ -114,14 +124,21 @@ def motion(result: Result, measures: Measures) -> Section | None:
     design = design_of(result)
     if design is None or (moved := design.response) is None:
         return None
+    micro = measures.unit("um")
+    errors = moved.transmission_error
+    lags = [errors.rms_mm, errors.peak_to_peak_mm, errors.highest_mm] if errors else []
     rows: list[list[Any]] = [
         ["method", moved.method],
         ["error reached, of the largest deformation", f"{moved.error:.2e}"],
         ["steps", moved.steps],
         ["times that teeth part", moved.separations],
-        [f"RMS about the mean [{measures.unit('um')}]", cell(moved.rms_mm, "um", measures)],
-        [f"peak to peak [{measures.unit('um')}]", cell(moved.peak_to_peak_mm, "um", measures)],
-        [f"{HIGHEST} [{measures.unit('um')}]", cell(moved.highest_mm, "um", measures)],
+        *(
+            [f"{TRANSMISSION}, {name} [{micro}]", cell(value, "um", measures)]
+            for name, value in zip(EXTENT, lags, strict=False)
+        ),
+        [f"deformation, RMS about the mean [{micro}]", cell(moved.rms_mm, "um", measures)],
+        [f"deformation, peak to peak [{micro}]", cell(moved.peak_to_peak_mm, "um", measures)],
+        [f"{HIGHEST} [{micro}]", cell(moved.highest_mm, "um", measures)],
         *_loads(moved, design.standard, measures),
     ]
     table = Table("response", ("", ""), rows, "RMS, peak to peak and loads of the second half.")
@@ -243,22 +260,32 @@ def _known_to(held: Speeds) -> list[str]:
 
 
 def _worst(held: Speeds, measures: Measures) -> str:
-    """Say where the RMS of a stable motion is largest."""
-    ways = [("", held.rms_mm, held.peak_to_peak_mm)]
-    if held.falling_rms_mm and held.falling_rms_mm != held.rms_mm:
-        ways.append((" as speed falls", held.falling_rms_mm, held.falling_peak_to_peak_mm))
-    ends = [
-        (rms, speed, way, height)
-        for way, all_rms, heights in ways
-        for rms, height, speed in zip(all_rms, heights, held.speed_rpm, strict=True)
-        if rms is not None and height is not None
-    ]
+    """Say where the RMS of a stable motion is largest, and the tooth load there.
+
+    The speed falls where the motion is another one than as it rises.
+    """
+    ways = ("", held.loads_N), (" as speed falls", held.falling_loads_N)
+    ends = []
+    rising = plots.vibrations(held)[0].rms_mm
+    for each, (way, loads) in zip(plots.vibrations(held), ways, strict=False):
+        for k, (rms, height) in enumerate(zip(each.rms_mm, each.peak_to_peak_mm, strict=True)):
+            if rms is not None and height is not None:
+                up = rising[k]
+                apart = up is None or not math.isclose(rms, up, rel_tol=SAME)
+                load = loads[0][k] if loads else None
+                ends.append((rms, not apart, -k, way * apart, height, each.highest_mm[k], load))
     if not ends:
         return "The motion is unstable at all speeds."
-    rms, speed, way, height = max(ends)
+    rms, _, k, way, height, most, load = max(ends, key=lambda end: end[:3])
+    largest = f"peak to peak {amount(height, 'um', measures)}"
+    if held.transmission_error and most is not None:
+        largest += f", maximum {amount(most, 'um', measures)}"
+    pressed = "" if load is None else f"; the tooth load is up to {amount(load, 'N', measures)}"
+    edge = ", an end of the range" if -k in (0, len(rising) - 1) and len(ends) > 1 else ""
     return (
-        f"The RMS of the deformation about its mean is largest at {speed:,.0f} rpm{way}: "
-        f"{amount(rms, 'um', measures)}, peak to peak {amount(height, 'um', measures)}."
+        f"The RMS of the {_varying(held)} about its mean is largest at "
+        f"{held.speed_rpm[-k]:,.0f} rpm{edge}{way}: {amount(rms, 'um', measures)}, {largest}"
+        f"{pressed}."
     )
 
 
@@ -282,25 +309,30 @@ def _speeds(held: Speeds, standard: StandardFactors, measures: Measures) -> Tabl
     heads = [f"RMS [{micro}]", f"peak to peak [{micro}]", f"{HIGHEST} [{micro}]", "motion"]
     loads = [f"tooth load, {name} [{force}]" for name in ("maximum", "minimum", "RMS")]
     heads += [*loads, "dynamic factor", "error"] if held.loads_N else []
+    lags = plots.vibrations(held) if held.transmission_error else []
+    heads = [f"{TRANSMISSION}, {name} [{micro}]" for name in EXTENT if lags] + heads
     rising = (
+        _each(lags[:1]),
         (held.rms_mm, held.peak_to_peak_mm, held.highest_mm),
         held.repeats,
         held.loads_N,
         (held.dynamic_factor, held.errors),
     )
     falling = (
+        _each(lags[1:]),
         (held.falling_rms_mm, held.falling_peak_to_peak_mm, held.falling_highest_mm),
         held.falling_repeats,
         held.falling_loads_N,
         (held.falling_dynamic_factor, held.falling_errors),
     )
-    ways = [rising, falling] if held.falling_rms_mm and rising[:2] != falling[:2] else [rising]
+    ways = [rising, falling] if held.falling_rms_mm and rising[:3] != falling[:3] else [rising]
     names = heads if len(ways) == 1 else [f"{h}, {w}" for w in ("rising", "falling") for h in heads]
     beside = [(n, v) for n, v in ((ISO, standard.iso), (AGMA, standard.agma)) if v]
     rows: list[list[Any]] = []
     for k, speed in enumerate(held.speed_rpm):
         row: list[Any] = [speed]
-        for sizes, repeats, forces, numbers in ways:
+        for errors, sizes, repeats, forces, numbers in ways:
+            row += [cell(values[k], "um", measures) for values in errors]
             row += [cell(values[k], "um", measures) for values in sizes]
             row.append(_said(repeats[k], sizes[2][k]))
             row += [cell(values[k], "N", measures) for values in forces]
@@ -308,6 +340,11 @@ def _speeds(held: Speeds, standard: StandardFactors, measures: Measures) -> Tabl
         rows.append(row + [values[k] for _, values in beside])
     heads = ["speed [rpm]", *names, *(name for name, _ in beside)]
     return Table("motions over speed", tuple(heads), rows, folded=True)
+
+
+def _each(errors: Sequence[DynamicErrors]) -> list[Sequence[float | None]]:
+    """RMS, peak to peak and maximum of a transmission error over speed; none of none."""
+    return [c for e in errors for c in (e.rms_mm, e.peak_to_peak_mm, e.highest_mm)]
 
 
 def _said(repeats: int, highest: float | None) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 
 from gearopt.formulations.dynamics.design import (
     Chosen,
+    DynamicErrors,
     Response,
     Speeds,
     Stability,
@@ -49,7 +50,16 @@ def response(motion: Response, measures: Measures) -> Figure:
     plot["shapes"] = [_across(0.0)]
     caption = "Deformation of the mesh, negative under compression; above the line teeth part."
     follows = ORBIT if motion.axes_mm else ""
-    return Figure([line(motion.time_ms, micro)], plot, caption, follows=follows)
+    if (errors := motion.transmission_error) is None:
+        return Figure([line(motion.time_ms, micro)], plot, caption, follows=follows)
+    plot["yaxis"]["title"] = axis(f"displacement [{measures.unit('um')}]")["title"]
+    plot["margin"] |= {"t": 44}
+    traces = [
+        line(motion.time_ms, micro, "deformation δ"),
+        line(motion.time_ms, _micro(errors.values_mm, measures), "transmission error", 2, "dash"),
+    ]
+    caption += " Dashed: the dynamic transmission error, by which the driven gear lags behind."
+    return Figure(traces, plot, caption, follows=follows)
 
 
 def load(motion: Response, measures: Measures) -> Figure:
@@ -95,7 +105,7 @@ def spectrum(motion: Response, mesh_frequency: float, measures: Measures) -> Fig
     drawn = mesh_frequency > 0.0 and high <= ORDERS * mesh_frequency
     orders = range(1, int(high / mesh_frequency) + 1) if drawn else range(0)
     plot["shapes"] = [upright(k * mesh_frequency) for k in orders]
-    caption = "Spectrum of the second half of the motion"
+    caption = "Spectrum of the deformation in the second half of the motion"
     caption += "; dotted: the mesh frequency and its multiples." if drawn else "."
     kept = [max(v, 1e-9) for v in micro]
     return Figure([line(motion.frequency_Hz, kept)], plot, caption)
@@ -194,10 +204,30 @@ def stability(chart: Stability) -> Figure:
     return Figure(traces, plot, caption)
 
 
+def vibrations(speeds: Speeds) -> list[DynamicErrors]:
+    """Transmission errors over speed, rising and, where it was followed, falling.
+
+    Of teeth without errors the deformation, which is the same but for its sign.
+    """
+    lags = speeds.transmission_error, speeds.falling_transmission_error
+    if any(lags):
+        return [lag for lag in lags if lag]
+    rows = (
+        (speeds.rms_mm, speeds.peak_to_peak_mm, speeds.highest_mm),
+        (speeds.falling_rms_mm, speeds.falling_peak_to_peak_mm, speeds.falling_highest_mm),
+    )
+    return [
+        DynamicErrors(rms_mm=rms, peak_to_peak_mm=height, highest_mm=most)
+        for rms, height, most in rows
+        if rms
+    ]
+
+
 def over_speed(speeds: Speeds, measures: Measures) -> Figure:
-    """Plot the RMS of the deformation over speed, rising and falling where they differ."""
-    ways = speeds.rms_mm, speeds.falling_rms_mm or speeds.rms_mm
-    rising, falling = ([_shown(v, measures) for v in way] for way in ways)
+    """Plot the RMS of the vibration over speed, rising and falling where they differ."""
+    each = vibrations(speeds)
+    of = "dynamic transmission error" if speeds.transmission_error else "deformation"
+    rising, falling = ([_shown(v, measures) for v in way.rms_mm] for way in (each[0], each[-1]))
     two = falling != rising
     traces = [line(speeds.speed_rpm, rising, "speed rising" if two else "")]
     if two:
@@ -216,7 +246,7 @@ def over_speed(speeds: Speeds, measures: Measures) -> Figure:
         traces.append(marks | {"mode": "markers", "marker": look})
     plot = layout(
         axis("speed of the pinion [rpm]", tickformat=","),
-        _measured("RMS of the deformation about its mean", measures),
+        _measured(f"RMS of the {of} about its mean", measures),
         HEIGHT,
         hovermode="x",
     )
@@ -226,7 +256,7 @@ def over_speed(speeds: Speeds, measures: Measures) -> Figure:
     plot["shapes"] = [band(low - half, high + half, series(2), opacity=0.12) for low, high in ends]
     if len(traces) > 1:
         plot["margin"] |= {"t": 44}
-    caption = "Motions over speed: RMS of the deformation about its mean."
+    caption = f"Motions over speed: RMS of the {of} about its mean."
     if any(unstable):
         caption += " Shaded: teeth in contact are unstable."
     return Figure(traces, plot, caption)
@@ -247,7 +277,9 @@ def waterfall(speeds: Speeds, measures: Measures) -> Figure:
         axis("order of the mesh frequency", dtick=1),
         HEIGHT,
     )
-    caption = "Waterfall: amplitudes of the orders of the mesh frequency over speed"
+    caption = (
+        "Waterfall of the deformation: amplitudes of the orders of the mesh frequency over speed"
+    )
     caption += ", speed rising." if speeds.falling_rms_mm not in ((), speeds.rms_mm) else "."
     return Figure([trace], plot, caption)
 
