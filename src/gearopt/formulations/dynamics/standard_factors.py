@@ -20,8 +20,8 @@ from gearopt.physics.motion.moving_pair import MovingPair
 class Toothing:
     """The teeth of a moving pair, as far as they are known.
 
-    face_width [mm] and grade of ISO 1328-1, None where not given; contact_ratio at rest; relief C_a
-    [mm]: mean of the tips of both gears.
+    face_width [mm] and grade of ISO 1328-1, None where not given; contact_ratio at rest, the total
+    one; relief C_a [mm]: mean of the tips of both gears.
     """
 
     gears: GearPair
@@ -74,17 +74,16 @@ def _of_iso(teeth: Toothing, pair: MovingPair, speeds: Array) -> Array | str:
     """Return K_v of ISO 6336-1, method B, at speeds of the pinion [rad/s], with K_A = 1.
 
     The resonance ratio by the mean stiffness and the mesh mass of the moving pair, c' by
-    c_gamma = c' (0.75 eps + 0.25); deviations are not run in.
+    c_gamma = c' (0.75 eps_alpha + 0.25); of helical gears by the total contact ratio. Deviations
+    are not run in.
     """
     width, grade, gears = teeth.face_width, teeth.grade, teeth.gears
     assert width is not None and grade is not None
-    if gears.pinion.helix_angle:
-        return "K_v of ISO 6336 is told here of spur gears: `gearopt rate` rates helical ones."
     if outside := beyond(gears, (grade, grade)):
         return f"K_v of ISO 6336 is not told: {', '.join(outside)} beyond ISO 1328-1."
     line = pair.pinion.torque / (0.5 * gears.pinion.reference_diameter) / width
     stiffness, mass = pair.wave.mean / width, pair.mesh_mass / width
-    single = stiffness / (0.75 * teeth.contact_ratio + 0.25)
+    single = stiffness / (0.75 * (teeth.contact_ratio - float(gears.overlap_ratio)) + 0.25)
     off = deviations(gears, (grade, grade))
     relative = iso.Dynamics(
         single * off.base_pitch / line,
