@@ -143,6 +143,45 @@ def test_the_factors_of_both_standards_are_those_by_hand():
     assert found.get("own_iso") is None and "[mesh] accuracy_grade is missing" in found["missing"]
 
 
+HELICAL = {  # 20/40 teeth, 3 mm, 15 degrees, in few slices
+    "gearopt": 1,
+    "kind": "pair",
+    "duty": {"power": "20 kW", "input_speed": "1500 rpm"},
+    "gears": {"treatment": "carburised", "helix_angle": "15 deg"},
+    "stage": [{"module": "3 mm", "pinion_teeth": 20, "wheel_teeth": 40, "face_width": "40 mm"}],
+    "rating": {"standard": "iso6336", "life": "1e4 h", "iso6336": {"accuracy_grade": [6, 5]}},
+    "flank": {"slices": 11},
+    "sharing": {"positions": 12, "coupling": "none", "level": "profile + Sainsot"},
+}
+
+
+def test_helical_gears_have_the_factor_of_iso_by_hand_at_the_grade_of_their_rating():
+    """ISO 6336-1, table 8, of eps_gamma > 2; f_pb = f_pt cos alpha_t of ISO 1328-1:1995."""
+    pair, bearings = gearopt.solve(HELICAL), {"bearing_stiffness": "400 kN/mm"}
+    asked = {"pinion": bearings, "wheel": bearings, "speeds": {"range": ["900 rpm", "1500 rpm"]}}
+    asked["speeds"]["points"] = 2
+    found = pair.stage().dynamics(**asked).design
+    rest, (mesh,) = found["equilibrium"], pair.design["rating"]["meshes"]
+    ratio, overlap = mesh["transverse_contact_ratio"], mesh["overlap_ratio"]
+    k, total = rest["mean_stiffness_N_per_mm"] / 40.0, ratio + overlap
+    assert total > 2.0
+    beta = math.radians(15.0)
+    m, d = math.sqrt(2.0 * 3.5), math.sqrt(50.0 * 125.0)
+    step = 2.0 ** (0.5 * (6 - 5))
+    f_pt = round(2.0 * step * (0.3 * (m + 0.4 * math.sqrt(d)) + 4.0)) / 2.0
+    f_f = round(2.0 * step * (2.5 * math.sqrt(m) + 0.17 * math.sqrt(d) + 0.5)) / 2.0
+    line = 2e4 / (1500.0 * math.pi / 30.0) / (30e-3 / math.cos(beta)) / 40.0
+    single = k / (0.75 * ratio + 0.25) * 1e-3  # N/(mm um)
+    transverse = math.atan(math.tan(math.radians(20.0)) / math.cos(beta))
+    pitch = 0.32 * single * f_pt * math.cos(transverse) / line
+    rest_of = 0.57 / (total - 0.3) * single * f_f / line + 0.096 / (total - 1.56)
+    turn = math.sqrt(1e6 * k * 40.0 / (1e3 * rest["mesh_mass_kg"])) / 20.0  # rad/s
+    known = [1.0 + n * math.pi / 30.0 / turn * (pitch + rest_of) for n in (900.0, 1500.0)]
+    assert found["standard"]["iso"] == pytest.approx(known, rel=2e-3)
+    with pytest.raises(SceneError, match="mesh.accuracy_grade = 8: contradicts .* it is 6 there"):
+        pair.stage().dynamics(**asked, mesh={"accuracy_grade": 8})
+
+
 def test_damping_that_acts_always_is_that_of_the_problem_to_optimise_too():
     """Apart, at 5 um and 2 mm/s: the collocated mesh pushes by c_0 v alone, c_0 of its pair."""
     content = tomllib.loads((PROBLEMS / "least_vibration_parting.toml").read_text())

@@ -88,7 +88,7 @@ class MeshRating:
     power_capacity: at which it is just met. Contact ratios are those of the tip circles, which the
     standards take; usable: the transverse one that undercut leaves, None where it is all.
     friction, efficiency: None where nothing is known of the oil; the error, up or down, is that of
-    a computed friction.
+    a computed friction. accuracy_grades: of ISO 1328-1 of both gears, None where not given.
     """
 
     stage: int
@@ -112,6 +112,7 @@ class MeshRating:
     friction_coefficient: Annotated[float | None, Shown("coefficient of friction μ")] = None
     mesh_efficiency_percent: Annotated[float | None, Shown("efficiency of the mesh")] = None
     mesh_efficiency_error_percent: Annotated[float | None, Shown("its error, up or down")] = None
+    accuracy_grades: tuple[int, int] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

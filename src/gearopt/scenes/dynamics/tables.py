@@ -128,7 +128,9 @@ class MeshTable(Table):
         None, description="Face width, for K_v of ISO 6336 and AGMA; by default that of `pair`"
     )
     accuracy_grade: Annotated[int | None, whole(6, 0, 12, scale=True)] = Field(
-        None, description="Accuracy grade of ISO 1328-1 of both gears, for K_v of ISO 6336 and AGMA"
+        None,
+        description="Accuracy grade of ISO 1328-1 of both gears, for K_v of ISO 6336 and AGMA; "
+        "with `from` the coarser one of the rating by ISO 6336",
     )
     speed: Annotated[Quantity | None, quantity("speed", "2000 rpm")] = Field(
         None, description="Speed of the pinion, which sets the mesh frequency"

@@ -105,7 +105,7 @@ def spectrum(motion: Response, mesh_frequency: float, measures: Measures) -> Fig
     drawn = mesh_frequency > 0.0 and high <= ORDERS * mesh_frequency
     orders = range(1, int(high / mesh_frequency) + 1) if drawn else range(0)
     plot["shapes"] = [upright(k * mesh_frequency) for k in orders]
-    caption = "Spectrum of the deformation in the second half of the motion"
+    caption = "Spectrum of the second half of the motion, of the deformation"
     caption += "; dotted: the mesh frequency and its multiples." if drawn else "."
     kept = [max(v, 1e-9) for v in micro]
     return Figure([line(motion.frequency_Hz, kept)], plot, caption)

@@ -118,8 +118,17 @@ def mesh_row(rating: RatingTable, mesh: Mesh, wanted: Sequence[float]) -> MeshRa
         usable_contact_ratio=_usable(pair),
         circumferential_backlash_mm=float(circumferential_backlash(pair)),
         normal_backlash_mm=float(normal_backlash(pair)),
+        accuracy_grades=_grades(rating, mesh),
         **_losses(rating, mesh),
     )
+
+
+def _grades(rating: RatingTable, mesh: Mesh) -> tuple[int, int] | None:
+    """Return the accuracy grades by ISO 1328-1 that the file gives for both gears."""
+    shared = rating.iso6336.accuracy_grade or (None, None)
+    rows = zip(mesh.tables, shared, strict=True)
+    first, second = (g if t.accuracy_grade is None else t.accuracy_grade for t, g in rows)
+    return None if first is None or second is None else (first, second)
 
 
 def _usable(pair: GearPair) -> float | None:
