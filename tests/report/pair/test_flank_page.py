@@ -43,7 +43,7 @@ def test_errors_are_told_by_the_coupling_and_not_of_spur_pairs(solved):
         name: answers(replace(found, coupling=name)) for name in ("finite elements", "ring torsion")
     }
     assert MEASURED in of["finite elements"] and SOFTER not in of["finite elements"]
-    assert of["ring torsion"][-2:] == [MEASURED, SOFTER]
+    assert of["ring torsion"][-1] == SOFTER and MEASURED not in of["ring torsion"]
     assert "finite elements" not in " ".join(answers(replace(found, overlap_ratio=0.0)))
 
 

@@ -37,7 +37,8 @@ class SharingTable(Table):
     coupling: Annotated[str | Quantity | None, COUPLING] = Field(
         None,
         description="Coupling of neighbouring tooth pairs, whose load deflects each other: a "
-        "model, or a number such as one from finite elements; by default ring torsion, with level "
+        "model, or a number such as one from finite elements; by default ring torsion, of "
+        "helical gears finite elements where they are installed, with level "
         "finite elements theirs",
     )
     loads: Annotated[tuple[Fraction, ...], LOADS] = Field(
