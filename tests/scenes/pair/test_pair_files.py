@@ -229,6 +229,9 @@ def test_a_model_without_a_ring_beside_a_coupling_by_the_ring_is_said():
 def test_a_light_line_load_is_said_to_rest_on_an_unverified_law():
     """17.8 N/mm at a tenth of the example's power, by hand: 2 * 20 N m/(75 mm * 30 mm)."""
     light = gearopt.solve(with_(GIVEN, {"duty.power": "2 kW"})).report["assumptions"]
+    assert any("by default it is the finest with a table [relief]" in each for each in light)
+    one_model = gearopt.solve(with_(GIVEN, {"sharing.coupling": "none"})).report["assumptions"]
+    assert not any("by default it is the finest" in each for each in one_model)
     assert "Unverified" in light[-1] and "here 17.8 N/mm" in light[-1]
     assert not any("Unverified" in each for each in gearopt.solve(GIVEN).report["assumptions"])
 

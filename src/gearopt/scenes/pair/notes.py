@@ -24,6 +24,7 @@ def flank_assumptions(scene: Scene, flank: FlankContact, pair: GearPair) -> list
         f"{flank.level}, in plane {flank.plane}; the contact compliance is that at the torque of "
         "the duty, at every load. Slices of a tooth hold each other as strips of a plate do.",
         f"All slices are coupled by {coupled:.3g} µm/kN ({flank.coupling}).",
+        *_by_default(scene),
         *_held(scene, flank),
         *_light(line_load(scene, pair)),
     ]
@@ -42,9 +43,20 @@ def contact_assumptions(scene: Scene, made: PairContact, pair: GearPair) -> list
         f"Teeth by {made.level}, in plane {strain}; the contact compliance is that at the torque "
         "of the duty, at every load.",
         f"Neighbouring teeth are coupled by {coupled:.3g} µm/kN ({made.coupling}).",
+        *_by_default(scene),
         *_held(scene, made),
         *_light(line_load(scene, pair)),
     ]
+
+
+def _by_default(scene: Scene) -> Iterator[str]:
+    """Yield that a table [relief] has another model of spur teeth, where the file names none."""
+    asked = scene.sharing
+    if not scene.helical and {asked.level, asked.coupling, asked.error} == {None}:
+        yield (
+            "[sharing] names no model: by default it is the finest with a table [relief], the "
+            "usual one without. Compare gears with and without relief by one level and coupling."
+        )
 
 
 def _light(line: float) -> Iterator[str]:
