@@ -145,7 +145,7 @@ def _model(name: str, contact: Contact) -> Iterator[str]:
     yield (
         f'The teeth of {name} are by level "{contact.level}" and coupling "{contact.coupling}". '
         f"For 34 spur pairs of steel a pair of teeth was {low:+.3g} to {high:+.3g} % off in "
-        "stiffness, against finite elements; its page has what was measured of the transmission error."
+        "stiffness, against finite elements; its page tells the error of the transmission error."
     )
 
 
