@@ -2,6 +2,7 @@
 
 import csv
 import io
+import re
 import tomllib
 from dataclasses import replace
 
@@ -9,7 +10,7 @@ import pytest
 from rich.console import Console
 
 import gearopt
-from gearopt.report.kinds.pair import PAGES, contact_of
+from gearopt.report.kinds.pair import PAGES, binding_limit, contact_of
 from gearopt.report.kinds.pair.flank import MEASURED, SOFTER, answers, flank_of, section
 from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages.result import page, sections, tables
@@ -35,6 +36,20 @@ def test_the_terminal_says_where_the_load_lies_and_what_was_not_measured(solved)
     assert "the gaps of the flanks counted as approach" in said
     assert "off the pinion 12 µm at its tip, from d 78.97 mm on" in said
     assert "this coupling is off was not measured on helical pairs" in said
+
+
+def test_peak_to_peak_values_of_the_first_lines_have_their_load(solved):
+    """Those of all loads with relief, the worst without it."""
+    result = solved("helical_pair")
+    half, whole = flank_of(result).loads
+    at = re.findall(r"([\d.]+) µm at (\d+) % of the torque", binding_limit(result))
+    assert [load for _, load in at] == ["50", "100"]
+    known = 1e3 * half.peak_to_peak_mm, 1e3 * whole.peak_to_peak_mm
+    assert [float(value) for value, _ in at] == pytest.approx(known, rel=1e-3)
+    (plain,) = [tile for tile in PAGES.tiles(result, METRIC) if "without relief" in tile.name]
+    assert whole.plain_peak_to_peak_mm > half.plain_peak_to_peak_mm
+    assert float(plain.value.split()[0]) == pytest.approx(1e3 * whole.plain_peak_to_peak_mm, 1e-3)
+    assert plain.remark == "at 100.0 % of the duty's torque"
 
 
 def test_errors_are_told_by_the_coupling_and_not_of_spur_pairs(solved):

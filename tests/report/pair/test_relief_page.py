@@ -11,6 +11,7 @@ from gearopt.formulations.pair.relief.meshing import Relief
 from gearopt.formulations.pair.relief_map import Removed, described
 from gearopt.physics.gears import GearPair
 from gearopt.physics.tooth.elastic import ElasticPair
+from gearopt.report.kinds.pair import PAGES
 from gearopt.report.kinds.pair.contact import moving
 from gearopt.report.kinds.pair.relief import (
     answers,
@@ -207,3 +208,12 @@ def test_the_page_of_a_relief_shows_what_to_grind_and_what_it_does(solved):
     train = found["Gears with all shafts in one plane"].words[0]
     assert train == "Both shafts are drawn in one plane: their positions are not optimised."
     assert len(found["Harmonics of the transmission error"].figures[0].data) == 6
+
+
+def test_key_figures_without_relief_are_those_of_its_loads_and_called_so(solved):
+    """4.99 µm at 60 and 100 %, as [0.6, 1] is what the relief is made for: docs/pair.md."""
+    tiles = {tile.name: tile for tile in PAGES.tiles(solved("relief_two_loads"), METRIC)}
+    plain = tiles["peak to peak without relief"]
+    assert float(plain.value.split()[0]) == pytest.approx(4.99, abs=5e-3)
+    assert plain.remark.startswith("at the worst of 2 loads")
+    assert "mean mesh stiffness without relief" in tiles

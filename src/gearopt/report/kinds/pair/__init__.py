@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from gearopt.formulations.pair.design import ContactLoad, PairContact
+from gearopt.formulations.pair.design import ContactLoad, PairContact, PairRelief
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import held
 from gearopt.report.answer import asked, assumptions, limits, summary
@@ -47,29 +47,34 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
         return []
     relief = relief_of(result)
     modified = pair_relief.tiles(relief, measures) if relief else []
-    of_contact = _contact_tiles(
-        pair_contact, of_duty(pair_contact.loads), measures, relief is not None
-    )
+    of_contact = _contact_tiles(pair_contact, of_duty(pair_contact.loads), measures, relief)
     return [*modified, *of_contact, *rating_words.tiles(result, measures)]
 
 
 def _contact_tiles(
-    pair_contact: PairContact, load: ContactLoad, measures: Measures, relieved: bool
+    pair_contact: PairContact, load: ContactLoad, measures: Measures, relief: PairRelief | None
 ) -> list[Tile]:
-    """The figures of contact without relief; relieved: those with it stand beside."""
+    """The figures of contact without relief; relief: that peak to peak is at its loads."""
     torque = f"at {share(load.load)} % of the duty's torque"
     part = f"{share(load.largest_share)} % of the normal force, {torque}"
     iso = amount(pair_contact.iso_mesh_stiffness_MPa, STIFFNESS, measures)
     off = off_in_mesh(pair_contact.in_mesh) if pair_contact.in_mesh else ""
+    plain, at, height = " without relief" * bool(relief), torque, load.peak_to_peak_mm
+    if relief:
+        height, at = max(relief.rows[0].peak_to_peak_mm), pair_relief.at_loads(relief)
     return [
-        Tile("largest load on a tooth", amount(load.largest_tooth_force_N, "N", measures), part),
         Tile(
-            "peak to peak without relief" if relieved else "transmission error, peak to peak",
-            amount(load.peak_to_peak_mm, "um", measures),
-            f"{torque}; {off}" if off else torque,
+            f"largest load on a tooth{plain}",
+            amount(load.largest_tooth_force_N, "N", measures),
+            part,
         ),
         Tile(
-            "mean mesh stiffness",
+            f"peak to peak{plain}" if relief else "transmission error, peak to peak",
+            amount(height, "um", measures),
+            f"{at}; {off}" if off else at,
+        ),
+        Tile(
+            f"mean mesh stiffness{plain}",
             amount(load.mean_mesh_stiffness_MPa, STIFFNESS, measures),
             f"c_γα of ISO 6336-1: {iso}",
         ),

@@ -59,7 +59,7 @@ def tiles(relief: PairRelief, measures: Measures) -> list[Tile]:
         Tile(
             f"the same flanks by {there.level}",
             _value(relief, there.value, measures),
-            f"{_at(relief)}; {_value(relief, there.without_relief, measures)} without relief",
+            f"{at_loads(relief)}; {_value(relief, there.without_relief, measures)} without relief",
         )
         for there in ([relief.judged] if relief.judged else [])
     ]
@@ -86,11 +86,11 @@ def relief_words(relief: PairRelief, measures: Measures) -> str:
         also = f"; the same flanks by {judged.level}: {_value(relief, judged.value, measures)}"
     return (
         f"tip relief of {first} on the pinion and {second} on the wheel changes the "
-        f"{CRITERIA[relief.minimise]} from {values} {_at(relief)}{also}"
+        f"{CRITERIA[relief.minimise]} from {values} {at_loads(relief)}{also}"
     )
 
 
-def _at(relief: PairRelief) -> str:
+def at_loads(relief: PairRelief) -> str:
     """The load that a value of the relief holds at."""
     if len(relief.loads) > 1:
         return f"at the worst of {len(relief.loads)} loads"
