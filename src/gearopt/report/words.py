@@ -360,7 +360,7 @@ def again(result: Result, html: str, measures: Measures) -> str:
     """
     if result.file is None:
         return ""
-    verb = "rate" if result.name == RATING else "solve"
+    verb = "rate" if result.name == RATING and result.scene == "drive" else "solve"
     if changes := result.options.get("changes"):
         return f"gearopt.{verb}({result.file!r}, {changes!r})"
     words = ["gearopt", verb, result.file]

@@ -15,6 +15,7 @@ from gearopt.report.kinds.pair.flank import MEASURED, SOFTER, answers, flank_of,
 from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.terminal import show
+from gearopt.report.words import again
 from gearopt.scenes.pair import KIND
 
 
@@ -104,6 +105,14 @@ RATED = {  # spur gears with crowned flanks, rated, whose relief is searched
     "sharing": {"positions": 12, "coupling": "none", "level": "profile + Sainsot"},
     "relief": {"amount": ["0 um", "20 um"], "length": [0.2, 0.5]},
 }
+
+
+def test_the_command_of_a_rated_pair_is_one_that_takes_pairs():
+    file = {key: table for key, table in RATED.items() if key != "relief"}
+    with pytest.raises(gearopt.SolveError, match="gearopt solve rates a pair"):
+        gearopt.rate(file)
+    result = replace(gearopt.solve(file), file="pair.toml")
+    assert again(result, "x.html", METRIC).startswith("gearopt solve pair.toml ")
 
 
 def test_a_searched_relief_of_rated_gears_has_a_page_that_calls_the_gears_safe():
