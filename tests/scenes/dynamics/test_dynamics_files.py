@@ -500,3 +500,18 @@ def test_a_motion_of_too_many_steps_is_refused_with_the_period_of_its_fastest_mo
     _, wide = read(text.encode(), "wide.toml")
     with pytest.raises(SolveError, match="has a period of 3.26e-16 s: a motion of 0.02 s takes"):
         gearopt.solve(wide)
+
+
+def test_a_motion_that_still_settles_is_told_so():
+    """x = e^(-zeta w t) cos w t of one mass under a load put on at once: half-lives by hand."""
+    content = tomllib.loads(KIND.example.text)
+    content = {key: content[key] for key in ("gearopt", "kind", "pinion", "wheel", "mesh")}
+    mesh = {"wave": "constant", "stiffness": "200 kN/mm", "axes": "fixed", "damping": 0.02}
+    mesh |= {key: content["mesh"][key] for key in ("pressure_angle", "teeth")}
+    content |= {"mesh": mesh, "simulate": {"duration": "4 ms"}}
+    rate = 0.02 * math.sqrt(2e5 * 3400.0)  # 1/s
+    (said,) = [w for w in gearopt.solve(content).design["warnings"] if "still settles" in w]
+    third, last = map(float, re.findall(r"by ([\d.]+) µm", said))
+    assert third / last == pytest.approx(math.exp(rate * 1e-3), rel=0.02)
+    content["simulate"] = {"duration": "4 ms", "start": "equilibrium"}
+    assert not gearopt.solve(content).design.get("warnings")

@@ -1,7 +1,7 @@
 """Warnings that precede the numbers of the motion of a pair."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from gearopt.formulations.dynamics.design import OUT_OF_MESH, DynamicsDesign, Response, Speeds
 from gearopt.formulations.dynamics.motion.stability import UNSTABLE
@@ -13,6 +13,7 @@ from gearopt.scenes.dynamics.tables import MOST_OUTPUTS
 
 APART = 0.1  # modules by which axes part or teeth give way without changing the stiffness much
 CLEARANCE = 0.25  # modules between tips and roots (ISO 53)
+SETTLED = 0.02  # of the peak to peak of its last quarter by which a motion may still fall
 OUTPUTS_PER_PERIOD = 10.0  # times in a period of the fastest motion at which it is told, at least
 
 
@@ -110,7 +111,20 @@ def _of_response(response: Response, design: DynamicsDesign) -> list[str]:
             f"The deformation rises to {MICRO * response.highest_mm:.3g} µm: teeth would part "
             "there, and a mesh without backlash pulls instead."
         )
-    return sentences
+    return [*sentences, *_settling(response)]
+
+
+def _settling(response: Response) -> Iterator[str]:
+    """Yield that the start of a motion still counts in its second half."""
+    quarter = max(1, len(response.deformation_mm) // 4)
+    values = response.deformation_mm[-2 * quarter :]
+    third, last = (max(part) - min(part) for part in (values[:quarter], values[quarter:]))
+    if response.steady_ms is None and third > (1.0 + SETTLED) * last:
+        yield (
+            f"The motion still settles: the deformation varies by {MICRO * third:.4g} µm in the "
+            f"third quarter of the time and by {MICRO * last:.4g} µm in the last. Numbers of the "
+            'second half count the start: take a longer duration, or start = "equilibrium".'
+        )
 
 
 def _too_few(times_ms: Sequence[float], design: DynamicsDesign) -> list[str]:

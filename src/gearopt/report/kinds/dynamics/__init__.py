@@ -138,7 +138,7 @@ def motion(result: Result, measures: Measures) -> Section | None:
         ),
         [f"deformation, RMS about the mean [{micro}]", cell(moved.rms_mm, "um", measures)],
         [f"deformation, peak to peak [{micro}]", cell(moved.peak_to_peak_mm, "um", measures)],
-        [f"{HIGHEST} [{micro}]", cell(moved.highest_mm, "um", measures)],
+        [f"{HIGHEST}, of the whole motion [{micro}]", cell(moved.highest_mm, "um", measures)],
         *_loads(moved, design.standard, measures),
     ]
     table = Table("response", ("", ""), rows, "RMS, peak to peak and loads of the second half.")
