@@ -477,8 +477,10 @@ def test_python_goes_the_same_way(kept, drive):
     again = pair.stage().dynamics(pinion=BEARINGS, wheel=BEARINGS)
     assert again.design["equilibrium"] == motion.design["equilibrium"]
     same(drive.stage().rate().design, gearopt.rate(RATING).design)
-    with pytest.raises(GearoptError, match="has stages 1 and 2"):
-        drive.stage(3).pair()
+    with pytest.raises(GearoptError, match="stage.3.: the result has stages 1 and 2"):
+        drive.stage(3)
+    with pytest.raises(TypeError, match="write budget=Budget.seconds=10."):
+        drive.stage(2).pair(seconds=10)
     packing = gearopt.Result(name="packing", status="feasible", method="", objective={})
     with pytest.raises(SceneError, match="is of kind a problem, not drive or pair"):
         packing.stage().pair()
