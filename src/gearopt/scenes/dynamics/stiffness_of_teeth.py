@@ -72,7 +72,7 @@ def of_teeth(scene: Scene, ask: Ask) -> OfTeeth:
     if scene.mesh.transmission_error == "pair":
         unloaded, quasistatic = flanks.unloaded, scene.mesh.wave == "constant"
         curve = load.transmission_error_mm if quasistatic else unloaded
-        error = error_harmonics(contact, curve, ERROR_HARMONICS)
+        error = error_harmonics(contact, curve, ERROR_HARMONICS) if max(curve) > 0.0 else error
         said.append(_of_error(str(named), quasistatic, load, max(curve) - min(curve)))
     averaged = scene.mesh.wave == "constant" and scene.mesh.stiffness is None
     if averaged or scene.mesh.wave == "pair":
@@ -117,6 +117,10 @@ def _flanks(design: dict[str, Any]) -> _Flanks:
 
 def _of_error(name: str, quasistatic: bool, load: Load, height: float) -> str:
     """Say which transmission error of a file excites the mesh."""
+    if not height:
+        return (
+            f"The unloaded teeth of {name} have no transmission error: nothing is off their flanks."
+        )
     most = f"{MICRO * height:.3g} µm peak to peak, its first {ERROR_HARMONICS} harmonics"
     if quasistatic:
         return (
