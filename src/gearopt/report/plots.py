@@ -60,7 +60,7 @@ def layout(x: dict[str, Any], y: dict[str, Any], height: int = 360, **more: Any)
     """A plot's layout in the page's look."""
     look = {
         "height": height,
-        "margin": {"l": 8, "r": 12, "t": 8, "b": 8},
+        "margin": {"l": 8, "r": 28, "t": 8, "b": 8},
         "plot_bgcolor": "--card",
         "legend": {
             "orientation": "h",

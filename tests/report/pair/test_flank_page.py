@@ -72,6 +72,10 @@ def test_pictures_and_files_hold_the_flank(solved):
     assert max(map(max, line.data[0]["z"])) <= found.loads[1].largest_line_load_N_per_mm * 1.001
     lines = [trace for trace in line.data if trace["type"] == "scatter"]
     assert 1 <= len(lines) <= 3 and len(error.data) == 2
+    for trace, load in zip(error.data, found.loads, strict=True):  # not from zero, as flat lines
+        assert min(trace["y"]) < 0.0 < max(trace["y"])
+        heights = max(trace["y"]) - min(trace["y"])
+        assert heights == pytest.approx(1e3 * load.peak_to_peak_mm, rel=1e-4)
     for trace in lines:  # along the base helix
         (s0, s1), (y0, y1) = trace["x"], trace["y"]
         assert (s1 - s0) == pytest.approx(0.19921 * (y1 - y0), abs=2e-4)

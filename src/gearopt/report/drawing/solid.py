@@ -272,7 +272,7 @@ def space(low: Point, high: Point, measures: Measures, height: int = 640) -> dic
         "showspikes": False,
     }
     scene: dict[str, Any] = {"aspectmode": "data", "dragmode": "orbit"}
-    scene["camera"] = {"eye": eye, "center": {"x": 0.0, "y": 0.0, "z": -0.1}}  # axes are below
+    scene["camera"] = {"eye": eye, "center": {"x": 0.0, "y": 0.0, "z": -0.2}}  # axes are below
     for a, start, end in zip("xyz", low, high, strict=True):
         title = {"text": f"{a} [{measures.unit('mm')}]", "font": {"size": 12}}
         scene[f"{a}axis"] = ax | {"title": title} | _ticks(start, end, measures)

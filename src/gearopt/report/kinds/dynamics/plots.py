@@ -85,7 +85,7 @@ def dynamic_factors(speeds: Speeds, standard: StandardFactors) -> Figure:
         line(speeds.speed_rpm, values, called, k, dash)
         for k, (called, values, dash) in enumerate(curves, 1)
     ]
-    ends = axis("dynamic factor", rangemode="tozero")
+    ends = axis("dynamic factor")
     plot = layout(axis("speed of the pinion [rpm]", tickformat=","), ends, HEIGHT, hovermode="x")
     plot["margin"] |= {"t": 44}
     caption = "Dynamic factor over speed: the largest tooth load over the normal load"

@@ -288,12 +288,16 @@ def _errors(flank: FlankContact, measures: Measures) -> Figure:
     x = [round(measures.of(v, "mm"), 5) for v in flank.travel_mm]
     traces, several = [], len(flank.loads) > 1
     for k, load in enumerate(flank.loads):
-        y = [float(f"{measures.of(v, 'um'):.6g}") for v in load.transmission_error_mm]
+        about = load.mean_transmission_error_mm
+        y = [float(f"{measures.of(v - about, 'um'):.6g}") for v in load.transmission_error_mm]
+        named = amount(about, "um", measures)
         trace = curve(x, y, series(k + 1), 2.0, DASHES[k % len(DASHES)], hover="%{y:.4g}")
-        traces.append(trace | {"name": f"at {100.0 * load.load:g} %", "showlegend": several})
+        traces.append(
+            trace | {"name": f"at {100.0 * load.load:g} %, about {named}", "showlegend": several}
+        )
     plot = layout(
         axis(f"travel [{measures.unit('mm')}]"),
-        axis(f"transmission error [{measures.unit('um')}]", rangemode="tozero"),
+        axis(f"transmission error<br>about its mean [{measures.unit('um')}]"),
         300,
         hovermode="x",
     )
