@@ -79,8 +79,8 @@ def test_an_evaluated_file_is_shown_and_has_exit_codes(folder):
 @pytest.mark.parametrize(
     ("name", "content", "rule"),
     [
-        ("none.json", None, "is not a file that can be read"),
-        ("none.toml", None, "is not a file that can be read"),
+        ("none.json", None, "does not exist"),
+        ("none.toml", None, "does not exist"),
         ("odd.json", b"{", "is not JSON"),
         ("odd.json", b"\xff\xfe", "is not JSON"),
         ("odd.json", b'{"a": 1}', "is not a result of `gearopt solve --json`"),

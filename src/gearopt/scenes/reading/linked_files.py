@@ -3,6 +3,7 @@
 import hashlib
 import json
 from dataclasses import field, replace
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, cast
 
@@ -101,6 +102,11 @@ def result_of(*kinds: str) -> Reads:
         kept = path.suffix == ".json"
         try:
             data = first_bytes(path, LARGEST_KEPT if kept else LARGEST_FILE)
+        except FileNotFoundError:
+            others = (p.name for p in path.parent.glob("*.*") if p.resolve() not in before)
+            there = get_close_matches(path.name, others, 1, ALIKE)
+            meant = f'Did you mean "{there[0]}", which stands beside it? ' if there else ""
+            raise refuse("does not exist", meant + remedy, action="tell") from None
         except (OSError, ValueError):
             raise wrong("is not a file that can be read") from None
         what: Result | BaseModel
@@ -140,6 +146,7 @@ LinkKeys = create_model(
         },
     ),
 )
+ALIKE = 0.8  # of the letters of the names of a missing file and of one beside it
 T = TypeVar("T", bound=Table)
 
 
