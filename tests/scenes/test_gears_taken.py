@@ -280,9 +280,11 @@ def test_teeth_excite_a_mean_stiffness_by_their_error_under_load(kept):
     result = gearopt.solve(DYNAMICS | {"mesh": mesh})
     same(result.design["equilibrium"], plain)
     said = " ".join(result.report["assumptions"])
+    assert "changes in steps" not in said
     assert "The mesh stiffness is the mean over a base pitch of the normal force over" in said
     assert "as the mesh stiffness is constant, it stands for its variation, too" in said
     bare = gearopt.solve(DYNAMICS | {"mesh": {"transmission_error": "pair"}}).report["assumptions"]
+    assert any("changes in steps, as teeth without relief" in sentence for sentence in bare)
     assert any("have no transmission error: nothing is off" in sentence for sentence in bare)
     half = gearopt.solve(DYNAMICS | {"mesh": mesh | {"stiffness": "100 kN/mm"}})
     assert half.design["equilibrium"]["mean_stiffness_N_per_mm"] == 1e5
@@ -321,7 +323,7 @@ def test_all_contradictions_are_told_at_once(kept):
         ({"gears.stage": None}, "gears.stage", "is missing: drive.json has stages 1 and 2"),
         ({"gears.stage": "2"}, "gears.stage", "is a text, not a whole number"),
         ({"gears.from": None}, "gears.stage", "no key `from` names one"),
-        ({"gears.from": "none.json"}, "gears.from", "is not a file that can be read"),
+        ({"gears.from": "none.json"}, "gears.from", "does not exist"),
         ({"gears.from": 7}, "gears.from", "is not the name of a file"),
     ],
 )
@@ -330,6 +332,12 @@ def test_a_wrong_source_is_told(kept, kind, changes, key, rule):
     with pytest.raises(SceneError) as wrong:
         gearopt.load(OF[kind], changes)
     assert wrong.value.key == key and rule in wrong.value.rule
+
+
+def test_the_name_of_a_missing_file_is_held_to_those_beside(kept):
+    with pytest.raises(SceneError) as wrong:
+        gearopt.load(PAIR, {"gears.from": "drve.json"})
+    assert wrong.value.remedy.startswith('Did you mean "drive.json", which stands beside it? Name')
 
 
 @pytest.mark.parametrize(("key", "name"), [("stage", "stge"), ("from", "fron")])

@@ -95,6 +95,22 @@ def test_speeds_are_told_where_largest_and_where_two():
     ]
 
 
+def test_the_first_line_has_the_largest_dynamic_factor_and_its_speed():
+    factors = {"dynamic_factor": (1.1, 1.2, 1.3, 2.0, None)}
+    factors |= {"falling_dynamic_factor": (1.1, 1.2, 2.5, 2.0, 1.5)}
+    design = DynamicsDesign(
+        kinematics="exact",
+        axes="line",
+        mesh_frequency_Hz=0.0,
+        equilibrium=REST,
+        speeds=replace(FOUND, **factors),
+    )
+    moved = Result("dynamics", "evaluated", "modes", {}, design=untyped(design), scene="dynamics")
+    assert decided(moved) == (
+        "The mean load deforms the mesh by 15 µm; the dynamic factor is up to 2.5, at 3,000 rpm."
+    )
+
+
 def test_one_motion_is_told_of_rising_speed():
     """Digits beyond those shown do not make a second motion; 1,000 rpm is an end of the range."""
     rms, falling = (0.04, *FOUND.rms_mm[1:]), (0.0400001, *FOUND.rms_mm[1:])

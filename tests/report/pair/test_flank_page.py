@@ -123,6 +123,7 @@ def test_a_searched_relief_of_rated_gears_has_a_page_that_calls_the_gears_safe()
     result = gearopt.solve(RATED, budget=gearopt.Budget(evaluations=8))
     (gears,) = result.parts
     assert max(gears.limits.values()) < 1.0 and gears.objective == {}
+    assert any("[flank] does not enter the rating" in s for s in result.report["assumptions"])
     made = {section.heading: section for section in sections(result)}
     states = made["What is proven, and how"].tables[0].rows[0]
     assert states[1:] == ["feasible, not proven optimal", "evaluated, all limits met"]

@@ -8,6 +8,7 @@ from gearopt.optimise.typed import Shown
 Columns = tuple[float, ...]
 Rows = tuple[Columns, ...]
 Gaps = tuple[float | None, ...]
+TRANSMISSION = "dynamic transmission error"
 OUT_OF_MESH = "Teeth leave mesh"  # how the first of the warnings begins where they do
 
 
@@ -47,9 +48,9 @@ class DynamicError:
     rms: about its mean. values: at the times of the motion.
     """
 
-    rms_mm: float
-    peak_to_peak_mm: float
-    highest_mm: float
+    rms_mm: Annotated[float, Shown(f"{TRANSMISSION}, RMS about the mean", unit="um")]
+    peak_to_peak_mm: Annotated[float, Shown(f"{TRANSMISSION}, peak to peak", unit="um")]
+    highest_mm: Annotated[float, Shown(f"{TRANSMISSION}, maximum", unit="um")]
     values_mm: Columns
 
 

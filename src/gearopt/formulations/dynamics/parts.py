@@ -25,8 +25,7 @@ from gearopt.formulations.dynamics.motion.stability import (
     ready,
     stability_map,
 )
-from gearopt.formulations.dynamics.tooth_load import dynamic_factor, load_over, tooth_load
-from gearopt.formulations.dynamics.transmission_error import extent, lag_of
+from gearopt.formulations.dynamics.tooth_load import dynamic_factor, extent, load_over, tooth_load
 from gearopt.formulations.pair.design import ContactLoad, PairContact, PairRelief
 from gearopt.formulations.pair.flank_design import FlankContact, FlankLoad
 from gearopt.optimise.clock import Clock
@@ -125,7 +124,7 @@ def response(
     states = simulated.motion.states
     load = load_over(pair, level, times[later:], states[later:])
     stiffness = pair.wave.value(pair.mesh_frequency * times)
-    lag = lag_of(pair, pair.mesh_frequency * times, delta)
+    lag = pair.error_at(pair.mesh_frequency * times) - delta
     lines, amplitude = _spectrum(steady, times[1] - times[0])
     digits = max(7, 2 - math.floor(math.log10(error)))  # more than the error that is asked
     return Response(

@@ -18,8 +18,7 @@ from gearopt.formulations.dynamics.motion.simulate import fastest
 from gearopt.formulations.dynamics.motion.stability import UNSTABLE, largest, ready
 from gearopt.formulations.dynamics.motion.timeline import timeline
 from gearopt.formulations.dynamics.parts import around, jammed, resting
-from gearopt.formulations.dynamics.tooth_load import Load, load_over
-from gearopt.formulations.dynamics.transmission_error import Lag, extent, lag_of
+from gearopt.formulations.dynamics.tooth_load import Lag, Load, extent, load_over
 from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
@@ -150,7 +149,7 @@ def linear_motion(pair: MovingPair, level: str, contact: Contact) -> Motion:
         1,
         bool(np.any(jammed(pair, level, passed))),
         load_over(pair, level, times, np.vstack([passed, passed[:1]])),
-        extent(lag_of(pair, phases, series.delta(phases.size))),
+        extent(pair.error_at(phases) - series.delta(phases.size)),
         contact.error,
         passed[0],
         series.delta(count)[:: count // LOOKS],
@@ -355,7 +354,7 @@ def _periodic_response(
         repeats=repeats,
         jams=motion.jammed is not None,
         load=load_over(pair, level, times, motion.states),
-        lag=extent(lag_of(pair, frequency * times[:-1], delta)),
+        lag=extent(pair.error_at(frequency * times[:-1]) - delta),
         error=error,
         state=motion.states[-1],
         delta=delta[: (repeats or KEPT) * looks : finer],

@@ -1,4 +1,4 @@
-"""Load on the teeth in a motion: the force of the mesh, with its extremes between known states."""
+"""Load on the teeth in a motion, with its extremes between known states; transmission error."""
 
 import math
 from typing import Any, NamedTuple
@@ -19,6 +19,19 @@ class Load(NamedTuple):
     most: float
     least: float
     rms: float
+
+
+class Lag(NamedTuple):
+    """Transmission error e - delta, the lag of the driven gear [mm]: RMS about its mean, extent."""
+
+    rms: float
+    height: float
+    most: float
+
+
+def extent(lag: Array) -> Lag:
+    """Return the extent of a transmission error at equal steps of time [mm]."""
+    return Lag(float(lag.std()), float(np.ptp(lag)), float(lag.max()))
 
 
 def tooth_load(pair: MovingPair, level: str, states: Array, stiffness: Any) -> Array:

@@ -67,8 +67,7 @@ def motion(scene: Scene, ask: Ask, known: Result | None) -> Result:
         wave, error, teeth, assumed = wave_of(scene.mesh), (), scene.toothing, []
     pair = scene.pair(wave, error)
     if scene.optimise is not None:
-        result = _least(scene, ask, pair, teeth, clock)
-        return _assuming(result, assumed)
+        return _least(scene, ask, pair, teeth, assumed, clock)
     without_method(ask, NOTHING)
     design = _design(scene, pair, teeth, scene.mesh.axes, clock)
     missing = _missing(scene, design) if clock.stopped else ""
@@ -79,22 +78,18 @@ def motion(scene: Scene, ask: Ask, known: Result | None) -> Result:
         objective={},
         certificate={"feasibility": 0.0},
         design=untyped(replace(design, warnings=tuple(warnings(design, scene.module, teeth)))),
-        report={"assumptions": assumptions(scene)},
+        report={"assumptions": [*assumptions(scene), *assumed]},
         message=missing,
         evaluations=clock.evaluations + 1,
         seed=ask.seed,
         versions=versions("numpy"),
     )
-    return _assuming(replace(evaluated, seconds=clock.seconds), assumed)
+    return replace(evaluated, seconds=clock.seconds)
 
 
-def _assuming(result: Result, assumed: list[str]) -> Result:
-    """Return a result with more assumptions, after those of every file."""
-    sentences = [*result.report.get("assumptions", []), *assumed]
-    return replace(result, report=result.report | {"assumptions": sentences}) if assumed else result
-
-
-def _least(scene: Scene, ask: Ask, before: MovingPair, teeth: Toothing, clock: Clock) -> Result:
+def _least(
+    scene: Scene, ask: Ask, before: MovingPair, teeth: Toothing, assumed: list[str], clock: Clock
+) -> Result:
     """Return the pair of least vibration, with what the tables of the file ask of it."""
     assert scene.optimise is not None
     result, best, task = optimised(scene, ask, before, clock)
@@ -109,7 +104,7 @@ def _least(scene: Scene, ask: Ask, before: MovingPair, teeth: Toothing, clock: C
         text = f"{result.message} {_missing(scene, design)}".strip()
         result = replace(result, message=text)
     said = (*told(best, result, scene.optimise.periods), *warnings(design, scene.module, teeth))
-    report: dict[str, Any] = {"assumptions": assumptions(scene)}
+    report: dict[str, Any] = {"assumptions": [*assumptions(scene), *assumed]}
     if notes := at_ends(task, values):
         report["notes"] = notes
     return replace(result, design=untyped(replace(design, warnings=said)), report=report)

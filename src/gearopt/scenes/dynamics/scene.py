@@ -166,8 +166,8 @@ class Scene(ProblemFile):
             source = "the file of `pair`" if mesh.pair is not None else "[optimise]"
             raise refuse(f"follows from {source}", at=("mesh", "face_width"), action="remove")
         for name in ("face_width", "accuracy_grade"):
-            follows = self.gears is not None
-            if getattr(mesh, name) is not None and not (self.simulate or self.speeds or follows):
+            beside = self.simulate or self.speeds or self.gears
+            if getattr(mesh, name) is not None and not beside:
                 rule = "changes nothing without [simulate] and [speeds], beside which K_v is told"
                 raise refuse(rule, at=("mesh", name), action="remove")
 

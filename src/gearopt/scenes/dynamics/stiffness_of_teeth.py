@@ -165,6 +165,11 @@ def _assumed(
         f"{flanks}, "
         f"at {100.0 * load.load:.4g} % of that file's torque, and the same at any force."
     )
+    if isinstance(load, ContactLoad) and not relieved and not averaged:
+        yield (
+            "It changes in steps, as teeth without relief are taken to meet at SAP; deflected ones "
+            "meet before it, and gradually: the dynamic factor may lie well above theirs and K_v."
+        )
     if not math.isclose(load.normal_force_N, force, rel_tol=NEAR):
         wanted = load.load * force / load.normal_force_N
         yield (

@@ -24,6 +24,8 @@ def flank_assumptions(scene: Scene, flank: FlankContact, pair: GearPair) -> list
         f"{flank.level}, in plane {flank.plane}; the contact compliance is that at the torque of "
         "the duty, at every load. Slices of a tooth hold each other as strips of a plate do.",
         f"All slices are coupled by {coupled:.3g} µm/kN ({flank.coupling}).",
+        *["[flank] does not enter the rating, whose load factors follow the keys of [rating]."]
+        * bool(scene.rating and scene.flank),
         *_by_default(scene),
         *_held(scene, flank),
         *_light(line_load(scene, pair)),

@@ -9,6 +9,7 @@ import numpy as np
 
 from gearopt.formulations.dynamics.design import (
     OUT_OF_MESH,
+    TRANSMISSION,
     DynamicErrors,
     DynamicsDesign,
     Response,
@@ -43,7 +44,6 @@ NOT_USED = (
     "not used: those of the answer follow from its sizes."
 )
 HIGHEST = "highest δ, negative in compression"
-TRANSMISSION = "dynamic transmission error"
 EXTENT = ("RMS about the mean", "peak to peak", "maximum")
 BY_ISO, BY_AGMA = "by ISO 6336-1 (method B)", "by AGMA 2001-D04"
 ISO, AGMA = f"K_v {BY_ISO}", f"K_v {BY_AGMA}"
@@ -86,7 +86,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
 
 def _varying(moved: Response | Speeds) -> str:
     """What measures the vibration: of teeth without errors their deformation says the same."""
-    return "dynamic transmission error" if moved.transmission_error else "deformation"
+    return TRANSMISSION if moved.transmission_error else "deformation"
 
 
 def _measure(result: Result) -> str:
@@ -107,6 +107,8 @@ def binding_limit(result: Result, measures: Measures = METRIC) -> str:
     rest = abs(design.equilibrium.deformation_mm)
     moved = design.response
     at_rest = f"the mean load deforms the mesh by {amount(rest, 'um', measures)}"
+    if moved is None and design.speeds and (largest := _largest_factor(design.speeds)):
+        return f"{at_rest}; the dynamic factor is up to {largest[0]:.4g}, at {largest[1]:,.0f} rpm"
     if moved is None:
         return at_rest
     varies = amount((moved.transmission_error or moved).peak_to_peak_mm, "um", measures)
@@ -125,17 +127,12 @@ def motion(result: Result, measures: Measures) -> Section | None:
     if design is None or (moved := design.response) is None:
         return None
     micro = measures.unit("um")
-    errors = moved.transmission_error
-    lags = [errors.rms_mm, errors.peak_to_peak_mm, errors.highest_mm] if errors else []
     rows: list[list[Any]] = [
         ["method", moved.method],
         ["error reached, of the largest deformation", f"{moved.error:.2e}"],
         ["steps", moved.steps],
         ["times that teeth part", moved.separations],
-        *(
-            [f"{TRANSMISSION}, {name} [{micro}]", cell(value, "um", measures)]
-            for name, value in zip(EXTENT, lags, strict=False)
-        ),
+        *(names_and_values(moved.transmission_error, measures) if moved.transmission_error else ()),
         [f"deformation, RMS about the mean [{micro}]", cell(moved.rms_mm, "um", measures)],
         [f"deformation, peak to peak [{micro}]", cell(moved.peak_to_peak_mm, "um", measures)],
         [f"{HIGHEST}, of the whole motion [{micro}]", cell(moved.highest_mm, "um", measures)],
@@ -223,14 +220,18 @@ def speeds(result: Result, measures: Measures) -> Section | None:
     return Section("Speeds", words=words, figures=figures, tables=(table,), terminal=words)
 
 
-def _factors(held: Speeds, standard: StandardFactors) -> list[str]:
-    """Say where the dynamic factor is largest, with K_v of the standards there."""
+def _largest_factor(held: Speeds) -> tuple[float, float] | None:
+    """The largest dynamic factor and its speed [rpm]; None where every motion grows for ever."""
     ways = held.dynamic_factor, held.falling_dynamic_factor
     both = [pair for way in ways for pair in zip(way, held.speed_rpm, strict=False)]
-    ends = [(k, n) for k, n in both if k is not None]
-    if not ends:
+    return max(((k, n) for k, n in both if k is not None), default=None)
+
+
+def _factors(held: Speeds, standard: StandardFactors) -> list[str]:
+    """Say where the dynamic factor is largest, with K_v of the standards there."""
+    if (largest := _largest_factor(held)) is None:
         return []
-    most, speed = max(ends)
+    most, speed = largest
     at = held.speed_rpm.index(speed)
     beside = [
         f"{values[at]:.4g} {name}"
@@ -312,29 +313,31 @@ def _speeds(held: Speeds, standard: StandardFactors, measures: Measures) -> Tabl
     lags = plots.vibrations(held) if held.transmission_error else []
     heads = [f"{TRANSMISSION}, {name} [{micro}]" for name in EXTENT if lags] + heads
     rising = (
-        _each(lags[:1]),
-        (held.rms_mm, held.peak_to_peak_mm, held.highest_mm),
+        [*_each(lags[:1]), held.rms_mm, held.peak_to_peak_mm, held.highest_mm],
         held.repeats,
         held.loads_N,
         (held.dynamic_factor, held.errors),
     )
     falling = (
-        _each(lags[1:]),
-        (held.falling_rms_mm, held.falling_peak_to_peak_mm, held.falling_highest_mm),
+        [
+            *_each(lags[1:]),
+            held.falling_rms_mm,
+            held.falling_peak_to_peak_mm,
+            held.falling_highest_mm,
+        ],
         held.falling_repeats,
         held.falling_loads_N,
         (held.falling_dynamic_factor, held.falling_errors),
     )
-    ways = [rising, falling] if held.falling_rms_mm and rising[:3] != falling[:3] else [rising]
+    ways = [rising, falling] if held.falling_rms_mm and rising[:2] != falling[:2] else [rising]
     names = heads if len(ways) == 1 else [f"{h}, {w}" for w in ("rising", "falling") for h in heads]
     beside = [(n, v) for n, v in ((ISO, standard.iso), (AGMA, standard.agma)) if v]
     rows: list[list[Any]] = []
     for k, speed in enumerate(held.speed_rpm):
         row: list[Any] = [speed]
-        for errors, sizes, repeats, forces, numbers in ways:
-            row += [cell(values[k], "um", measures) for values in errors]
+        for sizes, repeats, forces, numbers in ways:
             row += [cell(values[k], "um", measures) for values in sizes]
-            row.append(_said(repeats[k], sizes[2][k]))
+            row.append(_said(repeats[k], sizes[-1][k]))
             row += [cell(values[k], "N", measures) for values in forces]
             row += [values[k] for values in numbers if values]
         rows.append(row + [values[k] for _, values in beside])

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.dynamics.design import (
+    TRANSMISSION,
     Chosen,
     DynamicErrors,
     Response,
@@ -50,15 +51,11 @@ def response(motion: Response, measures: Measures) -> Figure:
     plot["shapes"] = [_across(0.0)]
     caption = "Deformation of the mesh, negative under compression; above the line teeth part."
     follows = ORBIT if motion.axes_mm else ""
-    if (errors := motion.transmission_error) is None:
-        return Figure([line(motion.time_ms, micro)], plot, caption, follows=follows)
-    plot["yaxis"]["title"] = axis(f"displacement [{measures.unit('um')}]")["title"]
-    plot["margin"] |= {"t": 44}
-    traces = [
-        line(motion.time_ms, micro, "deformation δ"),
-        line(motion.time_ms, _micro(errors.values_mm, measures), "transmission error", 2, "dash"),
-    ]
-    caption += " Dashed: the dynamic transmission error, by which the driven gear lags behind."
+    traces = [line(motion.time_ms, micro)]
+    if errors := motion.transmission_error:
+        lag = _micro(errors.values_mm, measures)
+        traces.append(line(motion.time_ms, lag, "", 2, "dash"))
+        caption += f" Dashed: the {TRANSMISSION}, by which the driven gear lags behind."
     return Figure(traces, plot, caption, follows=follows)
 
 
@@ -225,9 +222,9 @@ def vibrations(speeds: Speeds) -> list[DynamicErrors]:
 
 def over_speed(speeds: Speeds, measures: Measures) -> Figure:
     """Plot the RMS of the vibration over speed, rising and falling where they differ."""
-    each = vibrations(speeds)
-    of = "dynamic transmission error" if speeds.transmission_error else "deformation"
-    rising, falling = ([_shown(v, measures) for v in way.rms_mm] for way in (each[0], each[-1]))
+    both = vibrations(speeds)
+    of = TRANSMISSION if speeds.transmission_error else "deformation"
+    rising, falling = ([_shown(v, measures) for v in both[k].rms_mm] for k in (0, -1))
     two = falling != rising
     traces = [line(speeds.speed_rpm, rising, "speed rising" if two else "")]
     if two:

@@ -23,12 +23,11 @@ from gearopt.report.measures import METRIC, Measures, rounded
 from gearopt.report.plots import Figure, axis, heat, layout
 from gearopt.report.plots import lines as curve
 from gearopt.report.section import Section, Table, Tile
-from gearopt.report.words import amount, micrometres, number, share
+from gearopt.report.words import amount, micrometres, number, series_of, share
 
 IDLE = 0.005  # part of the contact lines that carries nothing, from which on it is told
 EVEN = 5e-4  # of a face load factor: nearer to 1 it is even
 HEIGHT = 380  # px
-FEW = 2  # loads whose transmission errors all stand in the first sentence
 # errors on three pairs against finite elements in space: docs/helical_pairs.md
 MEASURED = (
     "Accuracy: on three helical pairs of steel gears, with helix angles from 12 to 25 degrees, and "
@@ -45,7 +44,8 @@ SOFTER = (
 )
 CAPTION = (
     "Line load, contact stress, transmission error and stiffness at each load; s from the pitch "
-    "point, y from the middle of the face towards the end where contact begins."
+    "point, y from the middle of the face towards the end where contact begins. Without tip relief "
+    "the largest stress is that at ends of lines: the limit of a rating is one of mean line loads."
 )
 UNMEASURED = (
     "How far this coupling is off was not measured on helical pairs: with "
@@ -96,12 +96,11 @@ def binding_words(flank: FlankContact, measures: Measures) -> str:
     load = of_duty(flank.loads)
     line = amount(load.largest_line_load_N_per_mm, "N_per_mm", measures)
     each = [
-        amount(it.peak_to_peak_mm, "um", measures)
-        + f" at {100.0 * it.load:g} % of the torque" * (len(flank.loads) > 1)
-        for it in (flank.loads if len(flank.loads) <= FEW else (load,))
+        f"{amount(it.peak_to_peak_mm, 'um', measures)} at {100.0 * it.load:g} % of the torque"
+        for it in flank.loads
     ]
     carried = f"the flanks carry up to {line} of face width"
-    return f"{carried}; the transmission error varies by {' and '.join(each)}"
+    return f"{carried}; the transmission error varies by {series_of(each)}"
 
 
 def section(result: Result, measures: Measures = METRIC) -> Section | None:
