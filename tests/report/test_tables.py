@@ -17,6 +17,7 @@ from rich.console import Console
 import gearopt
 from gearopt.optimise.typed import Shown
 from gearopt.report import answer
+from gearopt.report.explained import of_influences
 from gearopt.report.measures import INCH, METRIC, SYSTEMS
 from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.section import (
@@ -331,3 +332,16 @@ def test_a_field_that_holds_a_module_has_its_unit_like_every_other_length():
     ((inch, cell), (width, _)) = names_and_values(Gear(2.54, 25.4), INCH)
     assert metric == "module m [mm]" and inch == "module m [in]" and float(cell.text) == 0.1
     assert width == "face width b [in]"
+
+
+def test_without_a_table_of_sensitivities_its_columns_are_not_explained(elevator):
+    """Numbers that change nothing stand in a sentence alone."""
+    idle = {"key": "limits.x", "value": "1", "sensitivity": 0.0, "resolved": [0.0, 0.0]}
+    idle |= {"step": "", "price": 0.0}
+    told = {"influences": [idle], "message": "the time sufficed for 1 of 12", "basis": ""}
+    section = of_influences(told, elevator)
+    assert section.tables == () and len(section.words) == 2
+    assert section.words[1].endswith("limits.x.")
+    moved = [idle, idle | {"key": "limits.y", "sensitivity": 1.0, "resolved": [1.0, 1.0]}]
+    more = of_influences(told | {"influences": moved}, elevator)
+    assert len(more.tables) == 1 and any("d ln / d ln" in words for words in more.words)

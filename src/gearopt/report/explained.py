@@ -139,7 +139,7 @@ def influence_words(prices: Mapping[str, Any], result: Result) -> list[str]:
     )
     if not prices["influences"]:
         return lines or ["No number of the file was examined."]
-    lines += _meaning(prices, name)
+    lines += [] if all(map(_is_idle, prices["influences"])) else _meaning(prices, name)
     steep = [i["key"] for i in prices["influences"] if _is_steep(i)]
     if steep:
         lines.append(
