@@ -213,10 +213,7 @@ class Result:
 
     @property
     def meets_limits(self) -> bool:
-        """Return whether its certificate says that all limits are met.
-
-        Also of a part, whose design the whole holds.
-        """
+        """Return whether its certificate says that all limits are met; of a part, too."""
         excess = self.certificate.get("feasibility")
         return excess is not None and excess <= FEASIBLE
 

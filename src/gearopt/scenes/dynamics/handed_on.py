@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from gearopt.formulations.drive.design import DriveDesign, StageDesign, drive_design
+from gearopt.formulations.drive.design import StageDesign, drive_design
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS
 from gearopt.scenes.reading.ask import Ask
@@ -27,7 +27,8 @@ def rotors_of(source: Input, number: int | None, ask: Ask) -> HandedOn:
     if source.kind != "pair":
         source, of = _in_contact(source, number, ask), f"stage {number or 1} of {of}"
     design = drive_design(source.result(ask).design)
-    stage, grade = design.stages[0], _grade(design)
+    stage, rating = design.stages[0], design.rating
+    grades = rating.meshes[0].accuracy_grades if rating else None
     pair, torque = stage.pair, 1e3 * stage.pinion_torque_Nm
     speed = 2e3 * stage.pitch_line_velocity_m_per_s / stage.pinion_diameter_mm
     tables: dict[str, Any] = {
@@ -45,19 +46,13 @@ def rotors_of(source: Input, number: int | None, ask: Ask) -> HandedOn:
         "speed": _of(speed, "rad/s", "speed"),
         "wave": "pair",
         "pair": source,
-        **({} if grade is None else {"accuracy_grade": grade}),
+        **({"accuracy_grade": max(grades)} if grades else {}),  # the coarser one
     }
     rows = ((table, name, v) for table, values in tables.items() for name, v in values.items())
     follows = {(table, name): value for table, name, value in rows if name != "wave"}
     balance = torque * stage.wheel_teeth / stage.pinion_teeth
     follows["wheel", "torque"] = _of(balance, "N mm", "torque")
     return HandedOn(of, tables, follows, lambda place: True)
-
-
-def _grade(design: DriveDesign) -> int | None:
-    """The coarser accuracy grade of both gears, where the file of their rating gives them."""
-    grades = design.rating.meshes[0].accuracy_grades if design.rating else None
-    return max(grades) if grades else None
 
 
 def _in_contact(source: Input, number: int | None, ask: Ask) -> Input:

@@ -261,10 +261,7 @@ def _known_to(held: Speeds) -> list[str]:
 
 
 def _worst(held: Speeds, measures: Measures) -> str:
-    """Say where the RMS of a stable motion is largest, and the tooth load there.
-
-    The speed falls where the motion is another one than as it rises.
-    """
+    """Say where the RMS of a stable motion is largest, and the tooth load there."""
     ways = ("", held.loads_N), (" as speed falls", held.falling_loads_N)
     ends = []
     rising = plots.vibrations(held)[0].rms_mm
