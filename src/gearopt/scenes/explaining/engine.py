@@ -29,17 +29,14 @@ logger = logging.getLogger("gearopt.remedies")
 FACTORS_TRIED = (1e6, 1e3, 16.0, 4.0, 2.0, 1.3, 1.1)  # the first that is decided counts
 LAST = 1.5  # times the time to make numbers sharper, for whether less suffices
 SHARE_OF_TIME = 0.4  # at most, of the time that is left, to make numbers sharper in given seconds
-SECANTS = 24
+SECANTS, NO_PROGRESS = 24, 1e-2  # of a logarithm: what falls by less in a step does not fall
 FASTER = 4.0  # power by which steps grow as long as there are designs
 OFTEN, FEW = 4, 5  # after so many designs for less, questions whether ones like them suffice
-NO_PROGRESS = 1e-2  # of that logarithm: what falls by less in a step does not fall
-NEGLIGIBLE = 1e-9  # of a factor
-LOG_TOLERANCE = 2e-5  # of the logarithm of a utilisation that counts as 1
+NEGLIGIBLE, LOG_TOLERANCE = 1e-9, 2e-5  # of a factor; of the log of a utilisation that counts as 1
 ROOM = (1.0, 1.001, 1.01)  # times a factor that was found by an excess, until a design is found
 CLOSER = (1.00005, 1.000005, 1.0 + 1e-7, 1.0 + 1e-9)  # in turn, where a little less suffices
 JOINT = "least"  # kind of a remedy whose numbers do not move alike: each of them is needed
-EACH = (JOINT, "pair")
-DEAR = 0.1  # s, of a question whose answer is no
+EACH, DEAR = (JOINT, "pair"), 0.1  # s, of a question whose answer is no
 DIGITS = (3, 4)  # significant digits of what one would write, tried in turn
 
 
