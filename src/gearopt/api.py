@@ -185,10 +185,10 @@ def _rate_found(kept: "Front | Result", design: Mapping[str, Any], options: Any)
 def export(what: File | Result, format: str, changes: Changes = None) -> bytes:
     """Return the bytes of a file for other programs: the answer to a problem file, or a Result.
 
-    format: rexs (XML 2.0.0; of a drive), dxf (drive, pair, strain_wave) or csv (these and
-    dynamics). changes: of a file, as in `load`. Gears that are all given are rated first, others
-    found. SceneError for a wrong file, SolveError where the answer has no such file, or its kind
-    has no such format.
+    format: rexs (XML 2.0.0; of a drive), step (drive, pair), dxf (these and strain_wave) or csv
+    (all these and dynamics). changes: of a file, as in `load`. Gears that are all given are rated
+    first, others found. SceneError for a wrong file, SolveError where the answer has no such file,
+    or its kind has no such format.
     """
     from gearopt.report.kinds import pages_of
 

@@ -154,7 +154,7 @@ def test_without_ezdxf_the_command_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "ezdxf", None)
     sheet = Sheet(Window(0.0, 1.0, 0.0, 1.0), 1.0)
     sheet.circle(0.5, 0.5, 0.5, "tip")
-    with pytest.raises(ImportError, match=r"pip install 'gearopt\[cad\]'"):
+    with pytest.raises(ImportError, match=r"pip install 'gearopt\[dxf\]'"):
         dxf([sheet.drawing("test", "a circle")])
     with pytest.raises(ValueError, match="nothing to draw"):
         dxf([])

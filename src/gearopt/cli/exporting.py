@@ -45,6 +45,10 @@ def export(
         bool,
         typer.Option("--dxf", help="As DXF: whole gears, meshes and views, with dimensions."),
     ] = False,
+    step: Annotated[
+        bool,
+        typer.Option("--step", help="As STEP: gears as solids in mesh, shafts, bearings."),
+    ] = False,
     csv: Annotated[
         bool,
         typer.Option(
@@ -64,7 +68,7 @@ def export(
 
     Gears that are all given are rated first, others found.
     """
-    asked = {"dxf": dxf, "csv": csv, "rexs": rexs}
+    asked = {"dxf": dxf, "step": step, "csv": csv, "rexs": rexs}
     formats = [name for name, chosen in asked.items() if chosen]
     if len(formats) != 1:
         raise GearoptError(f"export {file}: name one format: --{', --'.join(asked)}")

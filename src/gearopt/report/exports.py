@@ -1,4 +1,4 @@
-"""Files for other programs, made of what pages show: drawings as DXF, tables as CSV."""
+"""Files for other programs, of what pages show: drawings as DXF, bodies as STEP, tables as CSV."""
 
 from collections.abc import Callable, Iterable
 
@@ -6,7 +6,9 @@ from gearopt.formulations.drive.design import drive_design
 from gearopt.optimise.result import Result
 from gearopt.report.drawing.dxf import dxf
 from gearopt.report.drawing.gear_sections import sections
+from gearopt.report.drawing.placed import parts
 from gearopt.report.drawing.sheet import Drawing
+from gearopt.report.drawing.step import step
 from gearopt.report.kinds import Export, MakeSection
 from gearopt.report.measures import METRIC
 from gearopt.report.section import Table
@@ -25,6 +27,11 @@ def drawn(*pages: MakeSection, also: Callable[[Result], Iterable[Drawing]]) -> E
 def gears(result: Result) -> Iterable[Drawing]:
     """Sections of the gears and meshes of a drive or a pair."""
     return sections(drive_design(result.design), METRIC)
+
+
+def solids(result: Result) -> bytes:
+    """The STEP of the gears of a drive or a pair, with shafts and bearings of a layout."""
+    return step(parts(result))
 
 
 def listed(*pages: MakeSection, ending: str = "") -> Export:

@@ -194,7 +194,7 @@ def _undated(text):
 @pytest.mark.parametrize(
     ("words", "said"),
     (
-        ((), "name one format: --dxf, --csv, --rexs"),
+        ((), "name one format: --dxf, --step, --csv, --rexs"),
         (("--rexs", "-o", "x.toml"), "is a problem file"),
         (("--rexs", "-o", "no/where.rexs"), "there is no folder"),
     ),
@@ -207,7 +207,9 @@ def test_what_cannot_be_written_is_said_before(here, words, said):
 def test_other_kinds_are_not_written():
     with pytest.raises(gearopt.SolveError, match='"compound" is not exported as rexs'):
         gearopt.export(PROBLEMS / "sandgren_train.toml", "rexs")
-    with pytest.raises(gearopt.SolveError, match="is not exported as dwg; it is as dxf, csv, rexs"):
+    with pytest.raises(
+        gearopt.SolveError, match="is not exported as dwg; it is as dxf, step, csv, rexs"
+    ):
         gearopt.export(PROBLEMS / "two_stages_rated.toml", "dwg")
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from gearopt.report.drawing.sheet import LETTER, SIZE, Drawing, Mark
 
-EXTRA = "a DXF needs ezdxf: pip install 'gearopt[cad]'"
+EXTRA = "a DXF needs ezdxf: pip install 'gearopt[dxf]'"
 LAYERS = {  # colour by number of AutoCAD, line type
     "teeth": (7, "CONTINUOUS"),
     "circles": (3, "CONTINUOUS"),

@@ -74,7 +74,7 @@ def _gear(gear: Gear, name: str, stage: StageDesign, measures: Measures) -> Draw
     member = {"sun": "pinion", "planet": "wheel"}.get(name.split()[0], name.split()[0])
     member = "wheel" if member == "ring" and stage.type == "internal" else member
     ring = gear.teeth < 0
-    bodies = [_outside(gear, stage)] if ring else circles(held, member)
+    bodies = [outside(gear, stage)] if ring else circles(held, member)
     r = 0.5 * max(abs(float(gear.tip_diameter)), *bodies, 0.0)
     sheet = Sheet(window := Window(-r, r, -r, r, FREE), window.scale(ACROSS, ACROSS))
     points, bulges = outline(gear, -abs(0.5 * float(gear.reference_diameter)))
@@ -94,7 +94,7 @@ def _gear(gear: Gear, name: str, stage: StageDesign, measures: Measures) -> Draw
     return sheet.drawing(name, f"{name}: z {abs(gear.teeth):g}, transverse section")
 
 
-def _outside(ring: Gear, stage: StageDesign) -> float:
+def outside(ring: Gear, stage: StageDesign) -> float:
     """Outside diameter of a ring [mm]."""
     return stage.ring_outside_diameter_mm or -float(ring.outside)
 
@@ -104,7 +104,7 @@ def _mesh(pair: GearPair, name: str, stage: StageDesign, measures: Measures) -> 
     first, second = axes(pair)
     radii = [0.5 * abs(float(g.tip_diameter)) for g in pair.gears]
     if pair.wheel.teeth < 0:
-        radii[1] = 0.5 * _outside(pair.wheel, stage)
+        radii[1] = 0.5 * outside(pair.wheel, stage)
     ends = first - radii[0], second - radii[1], first + radii[0], second + radii[1]
     window = Window(-max(radii), max(radii), min(ends), max(ends), (60.0, 24.0, 24.0, 24.0))
     sheet = Sheet(window, window.scale(ACROSS, ACROSS))

@@ -133,6 +133,11 @@ def views(stages: Sequence[Mapping[str, Any]], measures: Measures) -> tuple[Draw
     return *fronts, _side(train, scale, measures)
 
 
+def bodies(stages: Sequence[Mapping[str, Any]]) -> Bodies | None:
+    """Shafts and gears of a train as it is drawn; None where a size is not known."""
+    return _in_plane(_picked(stages))[0] if is_drawn(stages) else None
+
+
 def _seen_together(stages: Sequence[DrawnStage]) -> list[list[int]]:
     """Numbers of stages, from 1, that one view along the shafts shows: each set alone."""
     groups: list[list[int]] = []

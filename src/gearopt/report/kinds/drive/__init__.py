@@ -19,7 +19,7 @@ from gearopt.report.drawing import layout_views, mesh_view, train_views
 from gearopt.report.drawing.bodies import layout_of
 from gearopt.report.drawing.impossible_views import section as impossible
 from gearopt.report.explained import remedies
-from gearopt.report.exports import drawn, gears, listed
+from gearopt.report.exports import drawn, gears, listed, solids
 from gearopt.report.headline import of_limits
 from gearopt.report.kinds import Pages
 from gearopt.report.kinds.drive import (
@@ -455,6 +455,7 @@ PAGES = Pages(
     whole="drive",
     exports={
         "dxf": drawn(layout_views.section, train_views.section, also=gears),
+        "step": solids,
         "csv": listed(places, drawing_tables.section),
         "rexs": rexs,
     },

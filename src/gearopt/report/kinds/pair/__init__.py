@@ -10,7 +10,7 @@ from gearopt.optimise.typed import held
 from gearopt.report.answer import asked, assumptions, limits, summary
 from gearopt.report.design_tables import stage_label
 from gearopt.report.drawing import mesh_view, train_views
-from gearopt.report.exports import drawn, gears, listed
+from gearopt.report.exports import drawn, gears, listed, solids
 from gearopt.report.kinds import Pages, drive
 from gearopt.report.kinds.drive import rating_words
 from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, OPENING, REQUEST
@@ -233,6 +233,10 @@ PAGES = Pages(
     sentences_on_parts=sentences_on_parts,
     warns=warns,
     whole="pair",
-    exports={"dxf": drawn(teeth, also=gears), "csv": listed(relief, ending="profile")},
+    exports={
+        "dxf": drawn(teeth, also=gears),
+        "step": solids,
+        "csv": listed(relief, ending="profile"),
+    },
     pages_of_given=PAGES_OF_GIVEN,
 )
