@@ -30,8 +30,8 @@ FACTORS_TRIED = (1e6, 1e3, 16.0, 4.0, 2.0, 1.3, 1.1)  # the first that is decide
 LAST = 1.5  # times the time to make numbers sharper, for whether less suffices
 SHARE_OF_TIME = 0.4  # at most, of the time that is left, to make numbers sharper in given seconds
 SECANTS, NO_PROGRESS = 24, 1e-2  # of a logarithm: what falls by less in a step does not fall
-FASTER = 4.0  # power by which steps grow as long as there are designs
-OFTEN, FEW = 4, 5  # after so many designs for less, questions whether ones like them suffice
+# power by which steps grow; after so many designs for less, questions of ones like them
+FASTER, OFTEN, FEW = 4.0, 4, 5
 NEGLIGIBLE, LOG_TOLERANCE = 1e-9, 2e-5  # of a factor; of the log of a utilisation that counts as 1
 ROOM = (1.0, 1.001, 1.01)  # times a factor that was found by an excess, until a design is found
 CLOSER = (1.00005, 1.000005, 1.0 + 1e-7, 1.0 + 1e-9)  # in turn, where a little less suffices
@@ -528,10 +528,8 @@ def of_use(asked: FeasibilityQuestions, groups: Sequence[Group]) -> list[Group]:
     """
     far = [(move, _farthest(asked, move)) for group in groups for move in group.numbers]
     verdict = asked.possible_with(tuple(far)) if len(groups) > 1 else None
-    if verdict is None:  # what all cannot decide is decided of each alone
-        return list(groups)
-    if not verdict:
-        return []
+    if not verdict:  # what all cannot decide is decided of each alone
+        return list(groups) if verdict is None else []
     middle = len(groups) // 2
     return of_use(asked, groups[:middle]) + of_use(asked, groups[middle:])
 
