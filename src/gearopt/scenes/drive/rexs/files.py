@@ -7,13 +7,14 @@ import xml.etree.ElementTree as ET
 import zipfile
 import zlib
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from defusedxml import DefusedXmlException
 from defusedxml.ElementTree import fromstring
 
+from gearopt.errors import SceneError
 from gearopt.scenes.drive.rexs.model import VERSION, Attribute, Component, Model, Relation, wrong
 from gearopt.scenes.reading.file_bytes import first_bytes
 
@@ -38,22 +39,21 @@ def read_model(path: str | Path) -> Model:
         data = first_bytes(path, LARGEST)
     except (OSError, ValueError) as refused:
         reason = getattr(refused, "strerror", None) or str(refused)
-        raise wrong("", None, f"cannot be read ({reason})", "Check the name") from None
-    return model_of(data)
-
-
-def model_of(data: bytes) -> Model:
-    """The model in the bytes of a file."""
+        raise _refused(f"cannot be read ({reason})", "Check the name") from None
     if data[:4] == b"PK\x03\x04":
         data = _unpacked(data)
     if len(data) > LARGEST:
-        raise wrong("", None, f"is larger than {LARGEST:,} bytes", "Export fewer results")
+        raise _refused(f"is larger than {LARGEST:,} bytes", "Export fewer results")
     start = data[:200].lstrip(b"\xef\xbb\xbf \t\r\n")
     if start[:1] == b"{":
         return _checked(_of_json(data))
     if start[:1] == b"<" or start[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return _checked(_of_xml(data))
-    raise wrong("", None, "is neither XML nor JSON nor a zip archive", "Name a file of REXS")
+    raise _refused("is neither XML nor JSON nor a zip archive", "Name a file of REXS")
+
+
+def _refused(rule: str, remedy: str = AGAIN) -> SceneError:
+    return wrong("", None, rule, remedy)
 
 
 def _unpacked(data: bytes) -> bytes:
@@ -63,11 +63,11 @@ def _unpacked(data: bytes) -> bytes:
             names = [n for n in archive.namelist() if n.lower().endswith(ENDINGS)]
             if len(names) != 1:
                 listed = f"{len(names)} REXS files" if names else "no REXS file"
-                raise wrong("", None, f"is an archive with {listed}", "Put one into it")
+                raise _refused(f"is an archive with {listed}", "Put one into it")
             with archive.open(names[0]) as file:
                 return file.read(LARGEST + 1)
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as odd:
-        raise wrong("", None, f"is a broken archive ({odd})", AGAIN) from None
+        raise _refused(f"is a broken archive ({odd})") from None
 
 
 def _of_xml(data: bytes) -> Raw:
@@ -75,42 +75,44 @@ def _of_xml(data: bytes) -> Raw:
         root = fromstring(data, forbid_dtd=True)
     except DefusedXmlException:
         rule = "declares a document type or entities, which no REXS file needs"
-        raise wrong("", None, rule, "Remove the lines <!DOCTYPE ...>") from None
+        raise _refused(rule, "Remove the lines <!DOCTYPE ...>") from None
     except ET.ParseError as odd:
-        raise wrong("", None, f"is not well-formed XML ({odd})", AGAIN) from None
+        raise _refused(f"is not well-formed XML ({odd})") from None
     except (ValueError, LookupError) as odd:
-        raise wrong(
-            "", None, f"is XML of an unknown encoding ({odd})", "Save it as UTF-8"
-        ) from None
-    if _tag(root) != "model":
-        raise wrong("", None, f"is XML, but no REXS: it begins with <{_tag(root)}>", AGAIN)
-    spectra = [_spectrum_of_xml(e) for e in root if _tag(e) == "load_spectrum"]
-    inside = {"relations": "relation", "components": "component"}
+        raise _refused(f"is XML of an unknown encoding ({odd})", "Save it as UTF-8") from None
+    if (tag := _tag(root)) != "model":
+        raise _refused(f"is XML, but no REXS: it begins with <{tag}>")
     lists = {
-        group: [_plain(e) for part in root if _tag(part) == group for e in part if _tag(e) == name]
-        for group, name in inside.items()
+        group: [row for part in _inside(root, group) for row in _inside(part, group[:-1], _plain)]
+        for group in ("relations", "components")
     }
-    return {**root.attrib, **lists, "load_spectrum": spectra}
+    return {**root.attrib, **lists, "load_spectrum": _inside(root, "load_spectrum", _spectrum)}
 
 
-def _spectrum_of_xml(spectrum: ET.Element) -> Raw:
-    cases = [e for e in spectrum if _tag(e) == "load_case"]
-    return {"load_cases": [{**e.attrib, "components": [_plain(c) for c in e]} for e in cases]}
+def _inside(element: ET.Element, tag: str, read: Callable[[ET.Element], Any] = list) -> list[Any]:
+    """What is read of the elements of a tag inside another."""
+    return [read(e) for e in element if _tag(e) == tag]
+
+
+def _spectrum(spectrum: ET.Element) -> Raw:
+    cases = [_inside(case, "component", _plain) for case in spectrum if _tag(case) == "load_case"]
+    return {"load_cases": [{"components": components} for components in cases]}
 
 
 def _plain(element: ET.Element) -> Raw:
     """A relation or component as JSON has it; an attribute has its text or list as "value"."""
-    raw: Raw = dict(element.attrib)
-    raw["refs"] = [dict(e.attrib) for e in element if _tag(e) == "ref"]
-    raw["attributes"] = [
-        {
-            **e.attrib,
-            "value": [c.text or "" for c in e.iter() if _tag(c) == "c"] if len(e) else e.text,
-        }
-        for e in element
-        if _tag(e) == "attribute"
-    ]
-    return raw
+    inner = {"refs": _inside(element, "ref", _attributes)}
+    inner["attributes"] = _inside(element, "attribute", _valued)
+    return {**element.attrib, **inner}
+
+
+def _attributes(element: ET.Element) -> Raw:
+    return dict(element.attrib)
+
+
+def _valued(element: ET.Element) -> Raw:
+    listed = [c.text or "" for c in element.iter() if _tag(c) == "c"]
+    return {**element.attrib, "value": listed if len(element) else element.text}
 
 
 def _tag(element: ET.Element) -> str:
@@ -121,12 +123,12 @@ def _of_json(data: bytes) -> Raw:
     try:
         raw = json.loads(data.decode("utf-8-sig"), parse_float=str)
     except RecursionError:
-        raise wrong("", None, "is nested too deeply", AGAIN) from None
+        raise _refused("is nested too deeply") from None
     except ValueError as odd:
-        raise wrong("", None, f"is not valid JSON ({odd})", AGAIN) from None
+        raise _refused(f"is not valid JSON ({odd})") from None
     model = raw.get("model")
     if not isinstance(model, dict):
-        raise wrong("", None, "is JSON, but no REXS: it has no object `model`", AGAIN)
+        raise _refused("is JSON, but no REXS: it has no object `model`")
     spectra = model.get("load_spectrum") or []
     return model | {"load_spectrum": spectra if isinstance(spectra, list) else [spectra]}
 
@@ -160,8 +162,8 @@ def _checked(raw: Raw) -> Model:
         for number in case.keys() - components.keys():
             raise wrong(str(case[number]), None, "is not among the components", AGAIN)
         cases.append(case)
-    source = " ".join(str(raw.get(k, "")) for k in ("applicationId", "applicationVersion"))
-    return Model(version, source.strip(), components, relations, cases)
+    source = (str(raw.get(key) or "") for key in ("applicationId", "applicationVersion"))
+    return Model(version, " ".join(source).strip(), components, relations, cases)
 
 
 def _number(value: Any, place: str) -> int:
@@ -174,28 +176,24 @@ def _number(value: Any, place: str) -> int:
 def _components(rows: Iterable[Raw], place: str) -> dict[int, Component]:
     components: dict[int, Component] = {}
     for row in rows:
-        number = _number(row.get("id"), f"{place}component.id")
-        kind = str(row.get("type", ""))
+        number, kind = _number(row.get("id"), f"{place}component.id"), str(row.get("type", ""))
         if number in components:
             raise wrong(f"{place}component {number}", None, "stands twice", "Give each its own id")
-        attributes = {}
-        for entry in _listed(row, "attributes", f"{place}component {number} ({kind})."):
+        component = Component(number, kind, str(row.get("name") or ""), {}, place)
+        for entry in _listed(row, "attributes", f"{component}."):
             name = str(entry.get("id", ""))
-            if name in attributes:
-                at = f"{place}component {number} ({kind}).{name}"
-                raise wrong(at, None, "stands twice", "Remove one")
-            values = [v for k, v in entry.items() if k not in ("id", "unit")]
-            value = "" if not values or values[0] is None else values[0]
-            attributes[name] = Attribute(value, str(entry.get("unit") or ""))
-        called = str(row.get("name") or "")
-        components[number] = Component(number, kind, called, attributes, place)
+            if name in component.attributes:
+                raise wrong(f"{component}.{name}", None, "stands twice", "Remove one")
+            values = [v for k, v in entry.items() if k not in ("id", "unit") and v is not None]
+            attribute = Attribute(values[0] if values else "", str(entry.get("unit") or ""))
+            component.attributes[name] = attribute
+        components[number] = component
     return components
 
 
 def _relation(row: Raw, components: Mapping[int, Component]) -> Relation:
     kind, number = str(row.get("type", "")), _number(row.get("id"), "relation.id")
-    at = f"relation {number} ({kind})"
-    refs = []
+    at, refs = f"relation {number} ({kind})", []
     for ref in _listed(row, "refs", f"{at}."):
         of = _number(ref.get("id"), f"{at}.ref.id")
         if of not in components:

@@ -6,11 +6,12 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
-from gearopt.scenes.drive.rexs.gears_read import Keys
-from gearopt.scenes.drive.rexs.model import Component, Model, Said, in_unit, wrong
+from gearopt.scenes.drive.rexs.model import Component, Keys, Model, Said, in_unit, wrong
 
 TORQUE, SPEED = "torque_around_u_axis", "rotational_speed"
+TIME, SHARE = "operating_time", "operating_time_fraction"
 KW = 30000.0 / math.pi  # N m/min in a kilowatt
+Case = Mapping[int, Component]
 
 
 def loads(
@@ -22,117 +23,101 @@ def loads(
 ) -> Keys:
     """Duty, life and load spectrum; shafts: speed of the input over theirs."""
     torque, speed, _ = _duty(model, {}, bodies, shafts)
-    cases = [_duty(model, case, bodies, shafts) for case in model.cases]
-    for k, (t, n, _) in enumerate(cases, 1):
+    cases = []
+    for k, case in enumerate(model.cases, 1):
+        t, n, enters = _duty(model, case, bodies, shafts)
         if t is None or n is None:
             name, what = (TORQUE, "torque") if t is None else (SPEED, "speed")
             rule = f"has no {what} of input or output shaft"
             raise wrong(f"load case {k}", None, rule, f"Write {name} of a shaft or its load")
+        cases.append((t, n, enters))
     if len({enters for *_, enters in cases}) > 1:
         remarks.append(
             "torque changes its sign between load cases: amounts are taken; write reversed_load = "
             "true at gears whose teeth are bent both ways"
         )
     if (torque is None or speed is None) and cases:
-        torque, speed, _ = max(cases, key=lambda c: float(c[0].value if c[0] else 0))
-    duty = {
-        "torque": _with(torque, "N m") or Said("100 N m", "", True),
-        "input_speed": _with(speed, "1 / min") or Said("1000 rpm", "", True),
-    }
+        torque, speed, _ = max(cases, key=lambda case: case[0].value)
     shares, life = _shares(model, unit)
-    levels = []
-    for (t, n, _), share in zip(cases, shares if len(cases) > 1 else [], strict=False):
-        assert t is not None and n is not None
-        power = Said(in_unit(float(t.value) * float(n.value) / KW, "kW"), t.origin)
-        levels.append({"power": power, "input_speed": _with(n, "1 / min"), "share": share})
+    duty = {
+        "torque": _with(torque, "N m") if torque else Said("100 N m", "", True),
+        "input_speed": _with(speed, "1 / min") if speed else Said("1000 rpm", "", True),
+    }
+    levels = [
+        {
+            "power": Said(in_unit(float(t.value) * float(n.value) / KW, "kW"), t.origin),
+            "input_speed": _with(n, "1 / min"),
+            "share": share,
+        }
+        for (t, n, _), share in zip(cases, shares, strict=False)
+    ]
     return {"duty": duty, "load": levels, "life": life}
 
 
-def _with(said: Said | None, unit: str) -> Said | None:
-    return None if said is None else Said(in_unit(said.value, unit), said.origin)
+def _with(said: Said, unit: str) -> Said:
+    return Said(in_unit(said.value, unit), said.origin)
 
 
 def _duty(
-    model: Model,
-    case: Mapping[int, Component],
-    bodies: Mapping[int, int],
-    shafts: Mapping[int, Fraction],
+    model: Model, case: Case, bodies: Mapping[int, int], shafts: Mapping[int, Fraction]
 ) -> tuple[Said | None, Said | None, bool]:
     """Torque [N m] and speed [1/min] of the input shaft, by whatever shaft they are said of.
 
     A load case says what changes. The last value: whether both have one sign.
     """
     speed = torque = None
-    signs = []
-    for c in changed_first(model.of_type("shaft"), case, SPEED):
-        here = says(c, case, SPEED)
-        if bodies[c.id] not in shafts:
-            continue
-        if speed is None and (n := here.number(SPEED)):
-            speed = Said(_times(abs(n), shafts[bodies[c.id]]), here.at(SPEED))
-            signs.append(n > 0)
-    ends = (next(iter(shafts)), [*shafts][-1])
-    for c in changed_first(model.of_type("external_load"), case, TORQUE):
-        if bodies[c.id] not in shafts:
-            continue
-        here, power = says(c, case, TORQUE), says(c, case, "power").number("power")
-        slower, value = shafts[bodies[c.id]], here.number(TORQUE)
+    signs = set[bool]()
+    on_path = [c for c in model.of_type("shaft", "external_load") if bodies[c.id] in shafts]
+    for c in said_first(on_path, case, SPEED, "shaft"):
+        slower = shafts[bodies[c.id]]
+        if speed is None and (n := c.number(SPEED)):
+            speed = Said(abs(n) * slower.numerator / slower.denominator, c.at(SPEED))
+            signs.add(n > 0)
+    powers = {c.id: c for c in said_first(on_path, case, "power", "external_load")}
+    for c in said_first(on_path, case, TORQUE, "external_load"):
+        slower, value, at = shafts[bodies[c.id]], c.number(TORQUE), c.at(TORQUE)
+        power = powers[c.id].number("power")
         if not value and power and speed is not None:
             value, slower = Decimal(repr(float(power) * KW / float(speed.value))), Fraction(1)
-            here = says(c, case, "power")
+            at = powers[c.id].at("power")
         if torque is None and value:
-            if bodies[c.id] not in ends:
+            if bodies[c.id] not in (next(iter(shafts)), [*shafts][-1]):
                 rule = "acts between two stages, and a drive has one input and one output"
-                raise wrong(here.at(TORQUE), str(value), rule, "Remove it")
-            torque = Said(_times(abs(value), 1 / slower), here.at(TORQUE))
-            signs.append(value > 0)
-    return torque, speed, len(set(signs)) < 2
+                raise wrong(at, str(value), rule, "Remove it")
+            torque = Said(abs(value) * slower.denominator / slower.numerator, at)
+            signs.add(value > 0)
+    return torque, speed, len(signs) < 2
 
 
-def changed_first(
-    components: Sequence[Component], case: Mapping[int, Component], name: str
+def said_first(
+    components: Sequence[Component], case: Case, name: str, type: str
 ) -> list[Component]:
-    """Components, first those of which a load case says an attribute."""
-    return sorted(components, key=lambda c: says(c, case, name) is c)
-
-
-def says(component: Component, case: Mapping[int, Component], name: str) -> Component:
-    """The component as a load case has it, where that says an attribute."""
-    here = case.get(component.id, component)
-    return here if here.has(name) else component
-
-
-def _times(value: Decimal, ratio: Fraction) -> Decimal:
-    """A number times a ratio, to 28 digits."""
-    return value * ratio.numerator / ratio.denominator
+    """Components of a type as a load case has them, where that says an attribute, and first."""
+    here = [(c, case.get(c.id, c)) for c in components if c.type == type]
+    said = [changed if changed.has(name) else c for c, changed in here]
+    return sorted(said, key=lambda c: not c.place)
 
 
 def _shares(model: Model, unit: Component | None) -> tuple[list[Any], Said | None]:
-    """Shares of the load cases, and the life."""
+    """Shares of the load cases, where there are two or more, and the life."""
     if unit is None:
         return [], None
-    life = unit.said("operating_time")
-    fractions, hours = [], []
-    for case in model.cases:
-        here = case.get(unit.id)
-        fractions.append(here.said("operating_time_fraction") if here else None)
-        hours.append(here.number("operating_time") if here else None)
-    known = [h for h in hours if h is not None]
-    if life is None and known and len(known) == len(hours):
-        life = Said(
-            in_unit(sum(known, Decimal(0)), "h"), model.cases[0][unit.id].at("operating_time")
-        )
-    if len(model.cases) < 2:
-        return fractions, life
-    if None in fractions and len(known) == len(hours):
-        total = sum(known, Decimal(0))
-        return [Said(in_unit(100 * h / total, "%"), unit.at("operating_time")) for h in known], life
-    for k, share in enumerate(fractions, 1):
-        if share is None:
-            at = f"load case {k}, {unit}.operating_time_fraction"
-            raise wrong(at, None, "is missing", "Write the share of each load case, in %")
-    total = sum((Decimal(share.value.split()[0]) for share in fractions if share), Decimal(0))
-    if abs(total - 100) > Decimal("1e-9"):
-        at = f"{unit}.operating_time_fraction"
-        raise wrong(at, f"{total} %", "of all load cases is not 100 %", "Correct the shares")
+    life = unit.said(TIME)
+    here = [case.get(unit.id) for case in model.cases]
+    fractions = [c.said(SHARE) if c else None for c in here]
+    hours = [h for c in here if c and (h := c.number(TIME)) is not None]
+    total, timed = sum(hours, Decimal(0)), len(hours) == len(here) > 0
+    if life is None and timed:
+        life = Said(in_unit(total, "h"), model.cases[0][unit.id].at(TIME))
+    if len(here) < 2:
+        return [], life
+    if None in fractions and timed and total:
+        return [Said(in_unit(100 * h / total, "%"), unit.at(TIME)) for h in hours], life
+    at = f"{unit}.{SHARE}"
+    if None in fractions:
+        case = f"load case {fractions.index(None) + 1}, "
+        raise wrong(case + at, None, "is missing", "Write the share of each load case, in %")
+    whole = sum((c.number(SHARE) or Decimal(0) for c in here if c), Decimal(0))
+    if abs(whole - 100) > Decimal("1e-9"):
+        raise wrong(at, f"{whole} %", "of all load cases is not 100 %", "Correct the shares")
     return fractions, life

@@ -2,7 +2,7 @@
 
 import csv
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
@@ -13,59 +13,64 @@ from gearopt.frozen import dataclass
 from gearopt.scenes.reading.toml_writing import short
 
 VERSION = "2.0.0"
-Value = str | float | int | bool | list[Any]
+EDITIONS = ("2019", "2006")  # of ISO 6336 in attributes
+Keys = dict[str, Any]  # of a table of a problem file; values that the REXS file says are `Said`
 
 
 @dataclass(frozen=True)
 class Spec:
-    """An attribute of the schema: unit, sort, least value, ids of earlier versions."""
+    """An attribute of the schema: unit, sort, least value, ids of earlier versions.
+
+    key: of a problem file, `times` of which it is, a number or "m", the normal module. result: the
+    field of an answer that it is, where it is written alone.
+    """
 
     unit: str
     sort: str
     range: str
     formerly: tuple[str, ...]
+    times: str
+    key: str
+    result: str
 
 
-def _specs() -> dict[tuple[str, str], Spec]:
+def _specs() -> dict[str, dict[str, Spec]]:
     """Attributes of `attributes.csv` by component and id."""
-    specs: dict[tuple[str, str], Spec] = {}
+    specs: dict[str, dict[str, Spec]] = {}
     with Path(__file__).with_name("attributes.csv").open(encoding="utf-8", newline="") as rows:
         for row in csv.DictReader(rows):
-            spec = Spec(row["unit"], row["sort"], row["range"], tuple(row["formerly"].split()))
-            specs |= {(of, row["attribute"]): spec for of in row["components"].split()}
+            times, _, key = row["key"].rpartition(" ")
+            formerly = tuple(row["formerly"].split())
+            spec = Spec(row["unit"], row["sort"], row["range"], formerly, times, key, row["result"])
+            name = row["attribute"]
+            names = [name.replace("*", each) for each in EDITIONS] if "*" in name else [name]
+            for of in row["components"].split():
+                specs.setdefault(of, {}).update(dict.fromkeys(names, spec))
     return specs
 
 
 SPECS = _specs()
-BY_NAME = {name: spec for (_, name), spec in SPECS.items()}
-UNITS: dict[str, dict[str, Decimal]] = {  # unit of the schema: units of files, of its size
-    "mm": {"mm": Decimal(1), "mum": Decimal("0.001"), "m": Decimal(1000)},
-    "mum": {"mum": Decimal(1), "mm": Decimal(1000)},
-    "deg": {
-        **dict.fromkeys(("deg", "\u00b0", "degree"), Decimal(1)),
-        "rad": Decimal(repr(math.degrees(1.0))),
-    },
-    "MPa": {**dict.fromkeys(("MPa", "N / mm^2", "N/mm^2"), Decimal(1)), "GPa": Decimal(1000)},
-    "N m": {"N m": Decimal(1), "Nm": Decimal(1), "kN m": Decimal(1000), "N mm": Decimal("0.001")},
-    "kW": {"kW": Decimal(1), "W": Decimal("0.001")},
-    "1 / min": {"1 / min": Decimal(1), "1/min": Decimal(1), "1 / s": Decimal(60)},
-    "h": {"h": Decimal(1)},
-    "%": {"%": Decimal(1)},
-    "kg / dm^3": {"kg / dm^3": Decimal(1), "kg / m^3": Decimal("0.001")},
-    "none": dict.fromkeys(("none", "-"), Decimal(1)),
+BY_NAME = {name: spec for specs in SPECS.values() for name, spec in specs.items()}
+UNITS = {  # unit of the schema: other units of files, of its size
+    "mm": {"mum": "0.001", "m": "1000"},
+    "mum": {"mm": "1000"},
+    "deg": {"\u00b0": "1", "degree": "1", "rad": repr(math.degrees(1.0))},
+    "MPa": {"N / mm^2": "1", "N/mm^2": "1", "GPa": "1000"},
+    "N m": {"Nm": "1", "kN m": "1000", "N mm": "0.001"},
+    "kW": {"W": "0.001"},
+    "1 / min": {"1/min": "1", "1 / s": "60"},
+    "kg / dm^3": {"kg / m^3": "0.001"},
+    "none": {"-": "1"},
 }
-TOML_UNITS = {
-    **{"1 / min": "rpm", "kg / dm^3": "kg/dm^3", "mm^2 / s": "mm^2/s", "mum": "um", "none": ""},
-    **{"%": "%", "HB": "HB", "HV": "HV", "mm": "mm", "deg": "deg", "MPa": "MPa", "N m": "N m"},
-    **{"kW": "kW", "h": "h"},
-}
+TOML_UNITS = {"1 / min": "rpm", "kg / dm^3": "kg/dm^3", "mm^2 / s": "mm^2/s", "mum": "um"}
 DIGITS = 40  # at most, of a number
 PLACES = 20  # before and after the point, of numbers without an exponent
+SMALL = 12  # digits after the point of what follows from lengths
 
 
-def wrong(key: str, value: Any, rule: str, remedy: str) -> SceneError:
+def wrong(key: object, value: Any, rule: str, remedy: str) -> SceneError:
     """An error at a place of a REXS file, whose name the reader adds."""
-    return SceneError("", key, "" if value is None else short(value), rule, remedy)
+    return SceneError("", str(key), "" if value is None else short(value), rule, remedy)
 
 
 @dataclass(frozen=True)
@@ -84,7 +89,7 @@ class Said:
 class Attribute:
     """Value and unit of an attribute, as the file has them."""
 
-    value: Value
+    value: Any
     unit: str = ""
 
 
@@ -95,7 +100,7 @@ class Component:
     id: int
     type: str
     name: str
-    attributes: Mapping[str, Attribute]
+    attributes: dict[str, Attribute]
     place: str = ""
     used: set[str] = field(default_factory=set)
 
@@ -111,9 +116,8 @@ class Component:
         return self._written(name) is not None
 
     def _written(self, name: str) -> str | None:
-        spec = BY_NAME.get(name)
-        known = (name, *(spec.formerly if spec else ()))
-        return next((n for n in known if n in self.attributes), None)
+        former = BY_NAME[name].formerly if name in BY_NAME else ()
+        return next((n for n in (name, *former) if n in self.attributes), None)
 
     def get(self, name: str) -> Attribute | None:
         """An attribute, which counts as used; None: it is unknown."""
@@ -128,22 +132,19 @@ class Component:
         attribute, spec = self.get(name), BY_NAME[name]
         if attribute is None:
             return None
-        text = str(attribute.value).strip()
         sort = "whole number" if spec.sort == "integer" else "number"
-        try:
-            value = Decimal(text) if len(text) <= DIGITS else Decimal("nan")
-        except InvalidOperation:
-            value = Decimal("nan")
-        if not value.is_finite() or abs(value) > Decimal("1e30"):
+        value = as_number(attribute.value)
+        if value is None:
             raise wrong(self.at(name), attribute.value, f"is no {sort}", f"Write a {sort}")
-        known = UNITS.get(spec.unit, {spec.unit: Decimal(1)})
+        text = str(attribute.value).strip()
         unit = attribute.unit.strip() or spec.unit
-        if unit not in known:
+        factor = "1" if unit == spec.unit else UNITS.get(spec.unit, {}).get(unit)
+        if factor is None:
             rule = f"is in {unit}, and the unit of the schema is {spec.unit}"
             raise wrong(self.at(name), text, rule, f"Write it in {spec.unit}")
-        if sort == "whole number" and value != value.to_integral_value():
+        if spec.sort == "integer" and value != value.to_integral_value():
             raise wrong(self.at(name), text, "is no whole number", "Write a whole number")
-        value *= known[unit]
+        value *= Decimal(factor)
         low = Decimal(spec.range.lstrip(">=")) if spec.range else None
         if low is not None and (value < low or (value == low and "=" not in spec.range)):
             words = f"at least {low}" if "=" in spec.range else f"above {low}"
@@ -151,12 +152,18 @@ class Component:
             raise wrong(self.at(name), text, rule, "Correct it in the program that wrote the file")
         return value
 
-    def said(self, name: str, sign: bool = True) -> Said | None:
-        """A number as a problem file has it, with its unit; sign: else its amount."""
+    def needed(self, name: str) -> Decimal:
+        """A number without which there is no gear."""
         value = self.number(name)
         if value is None:
+            raise wrong(self.at(name), None, "is missing", "Export the geometry of all gears")
+        return value
+
+    def said(self, name: str) -> Said | None:
+        """A number as a problem file has it, with its unit."""
+        value, spec = self.number(name), BY_NAME[name]
+        if value is None:
             return None
-        spec, value = BY_NAME[name], value if sign else abs(value)
         return Said(in_unit(value, spec.unit, spec.sort == "integer"), self.at(name))
 
     def word(self, name: str) -> str | None:
@@ -165,15 +172,63 @@ class Component:
         return None if attribute is None else str(attribute.value).strip()
 
 
+def as_number(value: Any) -> Decimal | None:
+    """A finite number of a file, None where it is none."""
+    text = str(value).strip()
+    try:
+        number = Decimal(text) if len(text) <= DIGITS else Decimal("nan")
+    except InvalidOperation:
+        return None
+    return number if number.is_finite() and abs(number) <= Decimal("1e30") else None
+
+
 def in_unit(value: Decimal | float, unit: str, whole: bool = False) -> Any:
     """A number of a REXS file as a problem file writes it; unit: of the schema."""
     number = (value if isinstance(value, Decimal) else Decimal(repr(value))).normalize()
     if -PLACES < number.adjusted() < PLACES:  # without an exponent
         number = Decimal(f"{number:f}")
-    name = TOML_UNITS[unit]
-    if name:
-        return f"{number} {name}"
+    if unit != "none":
+        return f"{number} {TOML_UNITS.get(unit, unit)}"
     return int(number) if whole else number
+
+
+def rounded(value: Decimal | float) -> Decimal:
+    """A number without the rounding errors of what it follows from."""
+    return round(Decimal(value), SMALL).normalize()
+
+
+def same(alike: Iterable[Component], name: str) -> tuple[Component, Decimal] | None:
+    """A number that components have alike, and one that says it; None: none says it."""
+    known: tuple[Component, Decimal] | None = None
+    for component in alike:
+        value = component.number(name)
+        if known is not None and value is not None and value != known[1]:
+            rule = f"differs from {known[1]} of {known[0]}"
+            raise wrong(component.at(name), str(value), rule, "gearopt takes equal ones alone")
+        known = known or (None if value is None else (component, value))
+    return known
+
+
+def keys_of(
+    alike: Sequence[Component], type: str = "", m: Decimal = Decimal(1), leave: str = ""
+) -> Keys:
+    """Keys of a problem file that components say alike; m: normal module [mm].
+
+    The first attribute of a key counts. Numbers without a unit, and lengths in modules, that are 0
+    are left out: it is what is usual. type: of the attributes, where not theirs. leave: a key.
+    """
+    keys: Keys = {}
+    for name, spec in SPECS[type or alike[0].type].items() if alike else ():
+        if spec.key in ("", leave, *keys) or (known := same(alike, name)) is None:
+            continue
+        component, value = known
+        if spec.times == "m":
+            number = in_unit(rounded(value / m), "none")
+        else:
+            value = value / Decimal(spec.times or 1)
+            number = in_unit(value, spec.unit, spec.sort == "integer")
+        keys[spec.key] = Said(number, component.at(name))
+    return {key: said for key, said in keys.items() if said.value}
 
 
 @dataclass(frozen=True)
@@ -207,13 +262,11 @@ class Model:
         """Components of some types, in the order of the file."""
         return [c for c in self.components.values() if c.type in types]
 
-    def related(self, type: str, role: str, of: int, other: str) -> Iterator[Component]:
-        """Components of a role in relations where `of` has another role, by their order."""
-        for relation in self.relations:
-            if relation.type == type and relation.of(role) == of:
-                number = relation.of(other)
-                if number is not None:
-                    yield self.components[number]
+    def related(self, type: str, role: str, of: int, other: str, *kinds: str) -> list[Component]:
+        """Components of a role, of some types, in relations where `of` has another role."""
+        numbers = [r.of(other) for r in self.relations if r.type == type and r.of(role) == of]
+        parts = [self.components[number] for number in numbers if number is not None]
+        return [c for c in parts if not kinds or c.type in kinds]
 
     @property
     def everything(self) -> Iterator[Component]:

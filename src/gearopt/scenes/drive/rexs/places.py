@@ -1,14 +1,12 @@
 """Where the shafts of a REXS model lie, as a table [layout] would have them."""
 
 from collections.abc import Mapping, Sequence
-from decimal import Decimal, InvalidOperation
-from typing import Any
+from decimal import Decimal
 
-from gearopt.scenes.drive.rexs.model import Component, Model, in_unit, wrong
+from gearopt.scenes.drive.rexs.model import Component, Model, as_number, in_unit, wrong
 
 PARALLEL = Decimal("0.999999")  # cosine
 AXES = ("u_axis_vector", "w_axis_vector", "support_vector")
-Vector = tuple[Decimal, ...]
 
 
 def places(model: Model, bodies: Mapping[int, int], path: Sequence[int]) -> list[str]:
@@ -17,41 +15,43 @@ def places(model: Model, bodies: Mapping[int, int], path: Sequence[int]) -> list
     path: bodies of the shafts from the input on. None where a shaft does not say where it is, or
     is not parallel to the first.
     """
+    shafts = [
+        next((c for c in model.of_type("shaft") if bodies[c.id] == body and _says(c)), None)
+        for body in path
+    ]
+    placed = [(c, [_vector(c, name) for name in AXES]) for c in shafts if c is not None]
+    if not placed or len(placed) < len(shafts):
+        return []
+    _, (u, w, origin) = placed[0]
+    v = [w[i - 2] * u[i - 1] - w[i - 1] * u[i - 2] for i in range(3)]
     lines: list[str] = []
-    first: list[Vector] | None = None
-    for k, body in enumerate(path, 1):
-        shafts = [c for c in model.of_type("shaft") if bodies[c.id] == body]
-        known = next((c for c in shafts if all(map(c.has, AXES))), None)
-        if known is None:
+    for k, (shaft, (axis, _, here)) in enumerate(placed[1:], 2):
+        if abs(_dot(axis, u)) < PARALLEL:
             return []
-        here = [_vector(known, name) for name in AXES]
-        first = first or here
-        u, w, origin = first
-        v = (w[1] * u[2] - w[2] * u[1], w[2] * u[0] - w[0] * u[2], w[0] * u[1] - w[1] * u[0])
-        if abs(_dot(here[0], u)) < PARALLEL:
-            return []
-        away = [a - b for a, b in zip(here[2], origin, strict=True)]
-        y, z = (in_unit(_dot(away, axis), "mm") for axis in (v, w))
-        if k > 1:
-            lines.append(
-                f"shaft {k} is {known}; with a table [layout] its place is a table [[place]] of "
-                f'shaft = {k}, y = "{y}", z = "{z}"'
-            )
+        away = [a - b for a, b in zip(here, origin, strict=True)]
+        y, z = (in_unit(_dot(away, along), "mm") for along in (v, w))
+        lines.append(
+            f"shaft {k} is {shaft}; with a table [layout] its place is a table [[place]] of "
+            f'shaft = {k}, y = "{y}", z = "{z}"'
+        )
     return lines
+
+
+def _says(shaft: Component) -> bool:
+    return all(map(shaft.has, AXES))
 
 
 def _dot(a: Sequence[Decimal], b: Sequence[Decimal]) -> Decimal:
     return sum((x * y for x, y in zip(a, b, strict=True)), Decimal(0))
 
 
-def _vector(component: Component, name: str) -> Vector:
+def _vector(component: Component, name: str) -> list[Decimal]:
     """A vector of three numbers."""
-    attribute: Any = component.get(name)
-    try:
-        values = tuple(Decimal(str(x)) for x in attribute.value)
-    except (InvalidOperation, TypeError):
-        values = ()
-    if len(values) != 3 or not all(x.is_finite() and abs(x) < 10**9 for x in values):
+    attribute = component.get(name)
+    value = attribute.value if attribute else None
+    numbers = [as_number(x) for x in value] if isinstance(value, list) else []
+    vector = [x for x in numbers if x is not None]
+    if len(vector) != 3 or len(numbers) != 3:
         rule = "is no vector of three numbers"
-        raise wrong(component.at(name), attribute.value, rule, "Write an array of three")
-    return values
+        raise wrong(component.at(name), value, rule, "Write an array of three")
+    return vector

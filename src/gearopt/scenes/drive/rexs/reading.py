@@ -51,9 +51,7 @@ def _comment(line: str) -> str:
 def _titles(model: Model, path: str | Path) -> dict[str, str]:
     units = model.of_type("gear_unit")
     title = units[0].word("model_name") or units[0].name if units else ""
-    source = " ".join(
-        filter(None, (f"REXS {model.version}", model.source and f"of {model.source}"))
-    )
+    source = f"REXS {model.version}" + f" of {model.source}" * bool(model.source)
     names = {"title": cut(title or Path(path).stem, RULES), "source": source}
     return {key: " ".join(filter(str.isprintable, value.split())) for key, value in names.items()}
 
@@ -67,10 +65,10 @@ def _written(value: Any) -> tuple[Any, str]:
 
 def _check(tables: dict[str, Any]) -> None:
     """Refuse what no problem file may say, at its place in the REXS file."""
+    origins: dict[str, str] = {}
     try:
-        read(_plain(tables))
+        read(_plain(tables, (), origins))
     except SceneError as error:
-        origins = dict(_origins(tables, ()))
         place = error.key
         while place and place not in origins:
             place = place.rpartition(".")[0]
@@ -79,24 +77,16 @@ def _check(tables: dict[str, Any]) -> None:
         raise SceneError(error.file, key, error.value, error.rule, error.remedy) from None
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: Any, path: tuple[Any, ...], origins: dict[str, str]) -> Any:
+    """Tables without the places of the REXS file that say their keys, which are noted."""
     if isinstance(value, Said):
-        return _plain(value.value)
+        origins[dotted(path)] = value.origin
+        value = value.value
     if isinstance(value, dict):
-        return {k: _plain(v) for k, v in value.items()}
-    return [_plain(v) for v in value] if isinstance(value, list) else value
-
-
-def _origins(value: Any, path: tuple[Any, ...]) -> Iterator[tuple[str, str]]:
-    """Where the REXS file says the keys of tables."""
-    if isinstance(value, Said):
-        yield dotted(path), value.origin
-    elif isinstance(value, dict):
-        for key, inner in value.items():
-            yield from _origins(inner, (*path, key))
-    elif isinstance(value, list):
-        for k, inner in enumerate(value):
-            yield from _origins(inner, (*path, k))
+        return {k: _plain(v, (*path, k), origins) for k, v in value.items()}
+    if isinstance(value, list):
+        return [_plain(v, (*path, k), origins) for k, v in enumerate(value)]
+    return value
 
 
 def _unplaced(model: Model) -> Iterator[str]:
