@@ -54,7 +54,7 @@ class Draft:
 
     def relate(self, type: str, order: int = 0, **roles: int) -> None:
         """Add a relation of components by role."""
-        self.relations.append(Relation(type, (*roles.items(),), order, len(self.relations) + 1))
+        self.relations.append(Relation(type, roles, order))
 
     def once(self, type: str, name: str, **values: Any) -> int:
         """Add a component once for all gears that have the same; return its number."""
@@ -106,11 +106,11 @@ def xml_of(model: Model) -> bytes:
     head = {"version": VERSION, "applicationId": application, "applicationVersion": version}
     root = ET.Element("model", {**head, "date": stamp, "applicationLanguage": "en"})
     group = ET.SubElement(root, "relations")
-    for relation in model.relations:
+    for k, relation in enumerate(model.relations, 1):
         order = {"order": str(relation.order)} if relation.order else {}
-        attributes = {"id": str(relation.id), "type": relation.type, **order}
-        element = ET.SubElement(group, "relation", attributes)
-        for role, number in relation.refs:
+        about = {"id": str(k), "type": relation.type, **order}
+        element = ET.SubElement(group, "relation", about)
+        for role, number in relation.refs.items():
             hint = model.components[number].type
             ET.SubElement(element, "ref", {"id": str(number), "role": role, "hint": hint})
     group = ET.SubElement(root, "components")

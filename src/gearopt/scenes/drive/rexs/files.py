@@ -6,7 +6,6 @@ import re
 import xml.etree.ElementTree as ET
 import zipfile
 import zlib
-from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -29,6 +28,7 @@ ROLES = {  # roles that a relation must have, of those that are read
     "reference": ("origin", "referenced"),
     "side": ("assembly", "inner_part", "outer_part"),
     "flank": ("gear",),
+    "planet_carrier_shaft": ("planetary_stage", "shaft"),
 }
 Raw = dict[str, Any]  # an element: its attributes and "children", as `_plain` makes them
 
@@ -192,16 +192,15 @@ def _components(rows: Iterable[Raw], place: str) -> dict[int, Component]:
 
 
 def _relation(row: Raw, components: Mapping[int, Component]) -> Relation:
-    kind, number = str(row.get("type", "")), _number(row.get("id"), "relation.id")
-    at, refs = f"relation {number} ({kind})", []
+    kind = str(row.get("type", ""))
+    at, refs = f"relation {row.get('id')} ({kind})", dict[str, int]()
     for ref in _listed(row, "refs", f"{at}."):
-        of = _number(ref.get("id"), f"{at}.ref.id")
+        of, role = _number(ref.get("id"), f"{at}.ref.id"), str(ref.get("role", ""))
         if of not in components:
             raise wrong(at, of, "names a component that is not there", AGAIN)
-        refs.append((str(ref.get("role", "")), of))
-    roles = Counter(role for role, _ in refs)
-    for role in ROLES.get(kind, ()):
-        if roles[role] != 1:
-            rule = f"has the role {role} {roles[role]} times" if roles[role] else f"lacks {role}"
-            raise wrong(at, None, rule, "Give it each role once")
-    return Relation(kind, tuple(refs), _number(row.get("order") or 0, f"{at}.order"), number)
+        if role in refs and role in ROLES.get(kind, ()):
+            raise wrong(at, None, f"has the role {role} twice", "Give it each role once")
+        refs[role] = of
+    if lacking := [role for role in ROLES.get(kind, ()) if role not in refs]:
+        raise wrong(at, None, f"lacks {lacking[0]}", "Give it each role once")
+    return Relation(kind, refs, _number(row.get("order") or 0, f"{at}.order"))

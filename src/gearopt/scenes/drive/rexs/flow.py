@@ -47,22 +47,20 @@ def bodies_of(model: Model) -> Bodies:
             number = body[number]
         return number
 
-    pins = {r.of("shaft") for r in model.relations if r.type == "planet_pin"}
+    pins = {r.refs.get("shaft") for r in model.relations if r.type == "planet_pin"}
     for relation in model.relations:
-        kinds = {role: model.components[i].type for role, i in relation.refs}
-        pair: tuple[int | None, int | None] = (None, None)
+        refs, pair = relation.refs, list[int]()
+        kinds = {role: model.components[i].type for role, i in refs.items()}
         if relation.type == "assembly" and kinds["assembly"] in ("shaft", "planet_carrier"):
-            pair = relation.of("assembly"), relation.of("part")
-            if kinds["part"] in GEARS and pair[0] in pins:
-                continue  # a planet turns on its pin
+            if kinds["part"] not in GEARS or refs["assembly"] not in pins:  # on which planets turn
+                pair = [refs["assembly"], refs["part"]]
         elif relation.type == "side" and kinds["assembly"] in JOINING:
-            pair = relation.of("inner_part"), relation.of("outer_part")
+            pair = [refs["inner_part"], refs["outer_part"]]
         elif relation.type == "planet_carrier_shaft":
-            carriers = _parts(model, relation.of("planetary_stage") or 0, "planet_carrier")
-            pair = relation.of("shaft"), carriers[0].id if carriers else None
-        first, second = pair
-        if first is not None and second is not None:
-            body[root(first)] = root(second)
+            carriers = _parts(model, refs["planetary_stage"], "planet_carrier")
+            pair = [refs["shaft"], *(c.id for c in carriers)][:2]
+        if len(pair) == 2:
+            body[root(pair[0])] = root(pair[1])
     return {number: root(number) for number in body}
 
 

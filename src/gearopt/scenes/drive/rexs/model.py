@@ -2,9 +2,10 @@
 
 import csv
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field
 from decimal import Decimal, InvalidOperation
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -39,13 +40,14 @@ def _specs() -> dict[str, dict[str, Spec]]:
     specs: dict[str, dict[str, Spec]] = {}
     with Path(__file__).with_name("attributes.csv").open(encoding="utf-8", newline="") as rows:
         for row in csv.DictReader(rows):
+            of_schema = row["unit"], row["sort"], row["range"], tuple(row["formerly"].split())
             times, _, key = row["key"].rpartition(" ")
-            formerly = tuple(row["formerly"].split())
-            spec = Spec(row["unit"], row["sort"], row["range"], formerly, times, key, row["result"])
-            name = row["attribute"]
-            names = [name.replace("*", each) for each in EDITIONS] if "*" in name else [name]
-            for of in row["components"].split():
-                specs.setdefault(of, {}).update(dict.fromkeys(names, spec))
+            results = row["result"].split()
+            for name, result in zip_longest(row["attribute"].split(), results, fillvalue=""):
+                names = [name.replace("*", year) for year in EDITIONS]
+                for of in row["components"].split():
+                    each = dict.fromkeys(names, Spec(*of_schema, times, key, result))
+                    specs[of] = specs.get(of, {}) | each
     return specs
 
 
@@ -236,13 +238,8 @@ class Relation:
     """A relation: its type, and the component of every role."""
 
     type: str
-    refs: tuple[tuple[str, int], ...]
+    refs: Mapping[str, int]
     order: int = 0
-    id: int = 0
-
-    def of(self, role: str) -> int | None:
-        """The component of a role."""
-        return next((i for name, i in self.refs if name == role), None)
 
 
 @dataclass(frozen=True)
@@ -264,13 +261,6 @@ class Model:
 
     def related(self, type: str, role: str, of: int, other: str, *kinds: str) -> list[Component]:
         """Components of a role, of some types, in relations where `of` has another role."""
-        numbers = [r.of(other) for r in self.relations if r.type == type and r.of(role) == of]
-        parts = [self.components[number] for number in numbers if number is not None]
+        refs = [r.refs for r in self.relations if r.type == type and r.refs.get(role) == of]
+        parts = [self.components[each[other]] for each in refs if other in each]
         return [c for c in parts if not kinds or c.type in kinds]
-
-    @property
-    def everything(self) -> Iterator[Component]:
-        """All components, also those of load cases."""
-        yield from self.components.values()
-        for case in self.cases:
-            yield from case.values()

@@ -92,7 +92,7 @@ def _plain(value: Any, path: tuple[Any, ...], origins: dict[str, str]) -> Any:
 def _unplaced(model: Model) -> Iterator[str]:
     """A line for every sort of component with attributes that were not asked for."""
     left: dict[tuple[str, tuple[str, ...]], list[str]] = {}
-    for c in model.everything:
+    for c in [c for part in (model.components, *model.cases) for c in part.values()]:
         if rest := tuple(n for n in c.attributes if n not in c.used and n not in VECTORS):
             numbers = left.setdefault((f"{'load cases, ' * bool(c.place)}{c.type}", rest), [])
             if str(c.id) not in numbers:
