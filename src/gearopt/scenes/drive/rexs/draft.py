@@ -13,7 +13,6 @@ from gearopt.scenes.drive.rexs.model import (
     EDITIONS,
     SPECS,
     VERSION,
-    Attribute,
     Component,
     Model,
     Relation,
@@ -64,10 +63,10 @@ class Draft:
         return self.shared[key]
 
 
-def of_schema(type: str, values: Mapping[str, Any]) -> dict[str, Attribute]:
+def of_schema(type: str, values: Mapping[str, Any]) -> dict[str, tuple[Any, str]]:
     """Attributes with the units of the schema; what is None is left out."""
     return {
-        name: Attribute(value, "none" if name.startswith(CUSTOM) else SPECS[type][name].unit)
+        name: (value, "none" if name.startswith(CUSTOM) else SPECS[type][name].unit)
         for name, value in values.items()
         if value is not None
     }
@@ -131,15 +130,11 @@ def _add(group: ET.Element, component: Component) -> None:
     head = {"id": str(component.id), "type": component.type}
     head |= {"name": component.name} if component.name else {}
     element = ET.SubElement(group, "component", head)
-    for name, attribute in component.attributes.items():
-        entry = ET.SubElement(element, "attribute", {"id": name, "unit": attribute.unit})
-        if isinstance(attribute.value, list):
+    for id, (value, unit) in component.attributes.items():
+        entry = ET.SubElement(element, "attribute", {"id": id, "unit": unit})
+        if isinstance(value, list):
             array = ET.SubElement(entry, "array")
-            for value in attribute.value:
-                ET.SubElement(array, "c").text = _text(value)
+            for number in value:
+                ET.SubElement(array, "c").text = str(number)
         else:
-            entry.text = _text(attribute.value)
-
-
-def _text(value: Any) -> str:
-    return str(value).lower() if isinstance(value, bool) else str(value)
+            entry.text = str(value).lower() if isinstance(value, bool) else str(value)

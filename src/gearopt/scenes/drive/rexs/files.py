@@ -6,7 +6,7 @@ import re
 import xml.etree.ElementTree as ET
 import zipfile
 import zlib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,7 @@ from defusedxml import DefusedXmlException
 from defusedxml.ElementTree import fromstring
 
 from gearopt.errors import SceneError
-from gearopt.scenes.drive.rexs.model import VERSION, Attribute, Component, Model, Relation, wrong
+from gearopt.scenes.drive.rexs.model import VERSION, Component, Model, Relation, wrong
 from gearopt.scenes.reading.file_bytes import first_bytes
 
 LARGEST = 20_000_000  # bytes of a file, also of one in an archive
@@ -30,6 +30,11 @@ ROLES = {  # roles that a relation must have, of those that are read
     "flank": ("gear",),
     "planet_carrier_shaft": ("planetary_stage", "shaft"),
 }
+INSIDE = {  # lists of JSON: elements of XML
+    **{"relations": "relation", "components": "component", "load_cases": "load_case"},
+    **{"refs": "ref", "attributes": "attribute"},
+}
+DEEPEST = 5  # elements within one another
 Raw = dict[str, Any]  # an element: its attributes and "children", as `_plain` makes them
 
 
@@ -82,37 +87,26 @@ def _of_xml(data: bytes) -> Raw:
         raise _refused(f"is XML of an unknown encoding ({odd})", "Save it as UTF-8") from None
     if (tag := _tag(root)) != "model":
         raise _refused(f"is XML, but no REXS: it begins with <{tag}>")
-    lists = {
-        group: [row for part in _inside(root, group) for row in _inside(part, group[:-1], _plain)]
-        for group in ("relations", "components")
+    raw: Raw = {**root.attrib, "relations": [], "components": [], "load_spectrum": []}
+    for part in root:
+        group = _tag(part)
+        if group in raw and group not in root.attrib:
+            raw[group] += _plain(part)[group] if group in INSIDE else [_plain(part)]
+    return raw
+
+
+def _plain(element: ET.Element, depth: int = 0) -> Raw:
+    """An element as JSON has it; an attribute has its text or list as "value"."""
+    if depth > DEEPEST:
+        raise _refused("is nested too deeply")
+    if _tag(element) == "attribute":
+        listed = [c.text or "" for c in element.iter() if _tag(c) == "c"]
+        return {**element.attrib, "value": listed if len(element) else element.text}
+    inner = {
+        group: [_plain(e, depth + 1) for e in element if _tag(e) == tag]
+        for group, tag in INSIDE.items()
     }
-    return {**root.attrib, **lists, "load_spectrum": _inside(root, "load_spectrum", _spectrum)}
-
-
-def _inside(element: ET.Element, tag: str, read: Callable[[ET.Element], Any] = list) -> list[Any]:
-    """What is read of the elements of a tag inside another."""
-    return [read(e) for e in element if _tag(e) == tag]
-
-
-def _spectrum(spectrum: ET.Element) -> Raw:
-    cases = [_inside(case, "component", _plain) for case in spectrum if _tag(case) == "load_case"]
-    return {"load_cases": [{"components": components} for components in cases]}
-
-
-def _plain(element: ET.Element) -> Raw:
-    """A relation or component as JSON has it; an attribute has its text or list as "value"."""
-    inner = {"refs": _inside(element, "ref", _attributes)}
-    inner["attributes"] = _inside(element, "attribute", _valued)
     return {**element.attrib, **inner}
-
-
-def _attributes(element: ET.Element) -> Raw:
-    return dict(element.attrib)
-
-
-def _valued(element: ET.Element) -> Raw:
-    listed = [c.text or "" for c in element.iter() if _tag(c) == "c"]
-    return {**element.attrib, "value": listed if len(element) else element.text}
 
 
 def _tag(element: ET.Element) -> str:
@@ -185,8 +179,8 @@ def _components(rows: Iterable[Raw], place: str) -> dict[int, Component]:
             if name in component.attributes:
                 raise wrong(f"{component}.{name}", None, "stands twice", "Remove one")
             values = [v for k, v in entry.items() if k not in ("id", "unit") and v is not None]
-            attribute = Attribute(values[0] if values else "", str(entry.get("unit") or ""))
-            component.attributes[name] = attribute
+            unit = str(entry.get("unit") or "").strip()
+            component.attributes[name] = (values[0] if values else "", unit)
         components[number] = component
     return components
 

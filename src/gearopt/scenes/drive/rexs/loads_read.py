@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any
@@ -40,8 +41,8 @@ def loads(
         torque, speed, _ = max(cases, key=lambda case: case[0].value)
     shares, life = _shares(model, unit)
     duty = {
-        "torque": _with(torque, "N m") if torque else Said("100 N m", "", True),
-        "input_speed": _with(speed, "1 / min") if speed else Said("1000 rpm", "", True),
+        "torque": _with(torque or Said(Decimal(100), "", True), "N m"),
+        "input_speed": _with(speed or Said(Decimal(1000), "", True), "1 / min"),
     }
     levels = [
         {
@@ -55,7 +56,7 @@ def loads(
 
 
 def _with(said: Said, unit: str) -> Said:
-    return Said(in_unit(said.value, unit), said.origin)
+    return replace(said, value=in_unit(said.value, unit))
 
 
 def _duty(

@@ -88,21 +88,16 @@ class Said:
 
 
 @dataclass(frozen=True)
-class Attribute:
-    """Value and unit of an attribute, as the file has them."""
-
-    value: Any
-    unit: str = ""
-
-
-@dataclass(frozen=True)
 class Component:
-    """A component, or what a load case says of it; used: ids of attributes that were asked for."""
+    """A component, or what a load case says of it.
+
+    attributes: value and unit, as the file has them. used: ids of those that were asked for.
+    """
 
     id: int
     type: str
     name: str
-    attributes: dict[str, Attribute]
+    attributes: dict[str, tuple[Any, str]]
     place: str = ""
     used: set[str] = field(default_factory=set)
 
@@ -121,38 +116,34 @@ class Component:
         former = BY_NAME[name].formerly if name in BY_NAME else ()
         return next((n for n in (name, *former) if n in self.attributes), None)
 
-    def get(self, name: str) -> Attribute | None:
-        """An attribute, which counts as used; None: it is unknown."""
+    def get(self, name: str) -> tuple[Any, str]:
+        """Value and unit of an attribute, which counts as used; (None, "") where it is unknown."""
         written = self._written(name)
-        if written is None:
-            return None
-        self.used.add(written)
-        return self.attributes[written]
+        self.used.update((written,) if written else ())
+        return self.attributes[written] if written else (None, "")
 
     def number(self, name: str) -> Decimal | None:
         """A number in the unit of the schema; SceneError where it is none, or out of its range."""
-        attribute, spec = self.get(name), BY_NAME[name]
-        if attribute is None:
+        (held, unit), spec = self.get(name), BY_NAME[name]
+        if held is None:
             return None
-        sort = "whole number" if spec.sort == "integer" else "number"
-        value = as_number(attribute.value)
-        if value is None:
-            raise wrong(self.at(name), attribute.value, f"is no {sort}", f"Write a {sort}")
-        text = str(attribute.value).strip()
-        unit = attribute.unit.strip() or spec.unit
-        factor = "1" if unit == spec.unit else UNITS.get(spec.unit, {}).get(unit)
-        if factor is None:
+        value, sort = as_number(held), "whole number" if spec.sort == "integer" else "number"
+        factor = {"": "1", spec.unit: "1", **UNITS.get(spec.unit, {})}.get(unit)
+        low, bound = (
+            Decimal(spec.range.lstrip(">=") or "-inf"),
+            "at least" if "=" in spec.range else "above",
+        )
+        rule, remedy = "", "Correct it in the program that wrote the file"
+        if value is None or (spec.sort == "integer" and value != value.to_integral_value()):
+            rule, remedy = f"is no {sort}", f"Write a {sort}"
+        elif factor is None:
             rule = f"is in {unit}, and the unit of the schema is {spec.unit}"
-            raise wrong(self.at(name), text, rule, f"Write it in {spec.unit}")
-        if spec.sort == "integer" and value != value.to_integral_value():
-            raise wrong(self.at(name), text, "is no whole number", "Write a whole number")
-        value *= Decimal(factor)
-        low = Decimal(spec.range.lstrip(">=")) if spec.range else None
-        if low is not None and (value < low or (value == low and "=" not in spec.range)):
-            words = f"at least {low}" if "=" in spec.range else f"above {low}"
-            rule = f"is not {words} {'' if spec.unit == 'none' else spec.unit}".rstrip()
-            raise wrong(self.at(name), text, rule, "Correct it in the program that wrote the file")
-        return value
+            remedy = f"Write it in {spec.unit}"
+        elif (scaled := value * Decimal(factor)) > low or (scaled == low and "=" in spec.range):
+            return scaled
+        else:
+            rule = f"is not {bound} {low} {'' if spec.unit == 'none' else spec.unit}".rstrip()
+        raise wrong(self.at(name), str(held).strip(), rule, remedy)
 
     def needed(self, name: str) -> Decimal:
         """A number without which there is no gear."""
@@ -170,8 +161,8 @@ class Component:
 
     def word(self, name: str) -> str | None:
         """A text; None: it is unknown."""
-        attribute = self.get(name)
-        return None if attribute is None else str(attribute.value).strip()
+        value, _ = self.get(name)
+        return None if value is None else str(value).strip()
 
 
 def as_number(value: Any) -> Decimal | None:

@@ -47,8 +47,7 @@ def _dot(a: Sequence[Decimal], b: Sequence[Decimal]) -> Decimal:
 
 def _vector(component: Component, name: str) -> list[Decimal]:
     """A vector of three numbers."""
-    attribute = component.get(name)
-    value = attribute.value if attribute else None
+    value, _ = component.get(name)
     numbers = [as_number(x) for x in value] if isinstance(value, list) else []
     vector = [x for x in numbers if x is not None]
     if len(vector) != 3 or len(numbers) != 3:
