@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any
 
 from gearopt.scenes.drive.rexs.flow import CASING, Step, bodies_of, in_order
 from gearopt.scenes.drive.rexs.gears_read import (
@@ -110,7 +109,9 @@ def _check_planets(model: Model, step: Step) -> None:
 def _rating(model: Model, unit: Component | None, tables: Keys, remarks: list[str]) -> Keys:
     """The table of the rating, with samples of what it needs and the file does not say."""
     rating: Keys = {"standard": Said("iso6336", "")} | custom(unit, "rating")
-    iso: Any = rating.pop("iso6336", Said({}, "")).value
+    held = rating.pop("iso6336", Said({}, ""))
+    if not isinstance(iso := held.value, dict):
+        raise wrong(held.origin, iso, "has no table as iso6336", "Remove the attribute")
     if tables["life"] is not None or "input_revolutions" not in rating:
         rating["life"] = tables["life"] or Said("20000 h", "", True)
     for owner in model.of_type(CASING, "cylindrical_stage"):
@@ -125,7 +126,7 @@ def _rating(model: Model, unit: Component | None, tables: Keys, remarks: list[st
     if "accuracy_grade" not in iso and "accuracy" not in rating:
         grades = [g["accuracy_grade"] for g in gears if "accuracy_grade" in g]
         lacking = not grades or len(grades) < len(gears)
-        coarsest = max(grades, key=lambda g: f"{g.value:>4}", default=None)
+        coarsest = max(grades, key=lambda g: f"{g.value!s:>4}", default=None)
         iso["accuracy_grade"] = Said(6, "", True) if lacking else coarsest
     for g in gears:
         if not g.keys() & {"iso_material", "steel", "treatment"}:

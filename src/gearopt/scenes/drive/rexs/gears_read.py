@@ -1,6 +1,7 @@
 """The gears of a REXS model as tables of a drive: teeth, tools, materials."""
 
 import math
+import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from decimal import Decimal
@@ -22,6 +23,7 @@ from gearopt.scenes.drive.rexs.model import (
 
 GEARS = ("cylindrical_gear", "ring_gear")
 GRADE = "global_tolerance_class_iso_1328_2013"
+GRADES = re.compile(r"[0-9]{1,3}")
 ALLOWANCES = tuple(f"{end}_backlash_allowance_referenced_to_span" for end in ("upper", "lower"))
 BETA = "helix_angle_reference_diameter"
 SHIFTS = ("addendum_modification_coefficient", "addendum_modification")
@@ -64,7 +66,10 @@ def custom(component: Component | None, name: str) -> Keys:
 
 def flanks(model: Model, gear: Component) -> list[Component]:
     """The flanks of a gear: left and right, one of both, or none."""
-    return [f for side in FLANKS for f in model.related("flank", "gear", gear.id, side)]
+    sides = [f for side in FLANKS for f in model.related("flank", "gear", gear.id, side)]
+    for odd in (f for f in sides if f.type != "cylindrical_gear_flank"):
+        raise wrong(odd, None, f"is no flank of {gear}", "Correct the relation of type flank")
+    return sides
 
 
 def material_of(model: Model, gear: Component) -> list[Component]:
@@ -88,7 +93,9 @@ def gear_keys(model: Model, gear: Component, remarks: list[str]) -> Keys:
     keys = own | teeth | _thinner(gear, sides) | _tool(model, gear, sides, remarks)
     keys |= keys_of([gear])
     if (grade := gear.word(GRADE)) is not None:
-        keys["accuracy_grade"] = Said(int(grade) if grade.isdigit() else grade, gear.at(GRADE))
+        keys["accuracy_grade"] = Said(
+            int(grade) if GRADES.fullmatch(grade) else grade, gear.at(GRADE)
+        )
     return keys | _material(model, gear, keys, remarks)
 
 
