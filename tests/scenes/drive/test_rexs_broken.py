@@ -79,7 +79,7 @@ def drop(kind, **roles):
 def bomb():
     """A small archive that holds more than 20 MB of blanks."""
     data = io.BytesIO()
-    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
+    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
         archive.writestr("unit.rexs", b" " * 21_000_000)
     return data.getvalue()
 
@@ -170,6 +170,8 @@ BROKEN = {
         of(61, heat_treated_material_type_iso_6336_2006="cheese"),
         'heat_treated_material_type_iso_6336_2006 = "cheese": is no known material',
     ),
+    "no flank": (besides("flank", gear=24, left=45, right=62), "is no flank of component 24"),
+    "own rating": (of(1, custom_gearopt_rating="{iso6336 = 3}"), "has no table as iso6336"),
     "own attribute": (of(21, custom_gearopt_gear="{x"), 'custom_gearopt_gear = "{x": is no table'),
     "own key": (of(21, custom_gearopt_gear="{profile = 1}"), "is not a key here"),
     "worm": (two_worms, "component 99 (worm_stage): is no stage of cylindrical gears"),

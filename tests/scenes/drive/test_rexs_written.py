@@ -140,6 +140,20 @@ def test_a_unit_is_read_written_and_read_again(rated, tmp_path):
         check_equal(tables[table], wanted[table])
 
 
+def test_sharp_tools_and_their_protuberance_are_kept(tmp_path):
+    """A radius of 0 is not the usual one; the protuberance is that before grinding."""
+    given = tomllib.loads((PROBLEMS / "two_stages_rated.toml").read_text(encoding="utf-8"))
+    sharp = {"tool_tip_radius": 0}
+    ground = {"tool_protuberance": 0.02, "grinding_allowance": 0.01}
+    changes = {
+        f"stage[1].{member}.{key}": value
+        for member, keys in (("pinion", sharp), ("wheel", ground))
+        for key, value in keys.items()
+    }
+    stage = read(gearopt.rate(given, changes).to_rexs(), tmp_path)["stage"][0]
+    assert stage["pinion"].items() >= sharp.items() and stage["wheel"].items() >= ground.items()
+
+
 @pytest.mark.slow
 def test_planets_are_read_written_and_read_again(tmp_path):
     given = read(xml(planetary()).encode(), tmp_path)

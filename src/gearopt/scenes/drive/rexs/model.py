@@ -208,7 +208,7 @@ def keys_of(
     """Keys of a problem file that components say alike; m: normal module [mm].
 
     The first attribute of a key counts. Numbers without a unit, and lengths in modules, that are 0
-    are left out: it is what is usual. type: of the attributes, where not theirs. leave: a key.
+    are left out: it is what is usual, but of radii. type: of the attributes, where not theirs. leave: a key.
     """
     keys: Keys = {}
     for name, spec in SPECS[type or alike[0].type].items() if alike else ():
@@ -221,7 +221,7 @@ def keys_of(
             value = value / Decimal(spec.times or 1)
             number = in_unit(value, spec.unit, spec.sort == "integer")
         keys[spec.key] = Said(number, component.at(name))
-    return {key: said for key, said in keys.items() if said.value}
+    return {key: s for key, s in keys.items() if s.value or key.endswith("tip_radius")}
 
 
 @dataclass(frozen=True)

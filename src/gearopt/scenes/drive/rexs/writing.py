@@ -179,7 +179,7 @@ def _gear(
     said |= dict.fromkeys(ALLOWANCES, span) | {GRADE: _grade(scene, table, member)}
     number = draft.part(kind, f"{member} of stage {k + 1}", shaft, **said)
     of_material = _material(draft, number, table)
-    tool, of_tool = _tool(draft, gear)
+    tool, of_tool = _tool(draft, table, gear)
     _flanks(draft, number, table, gear, tool)
     kept = content(table, False)
     if member == "ring":
@@ -207,7 +207,7 @@ def _grade(scene: Any, table: Any, member: str) -> str | None:
     return str(grade) if grade else None
 
 
-def _tool(draft: Draft, gear: Gear) -> tuple[int, set[str]]:
+def _tool(draft: Draft, table: Any, gear: Gear) -> tuple[int, set[str]]:
     """Add the tool of a gear, unless another one has the same; the keys of such a tool."""
     m, rack, cutter = float(gear.normal_module), gear.rack, gear.cutter
     kind, said = (
@@ -215,7 +215,7 @@ def _tool(draft: Draft, gear: Gear) -> tuple[int, set[str]]:
         {
             "tool_addendum": rack.dedendum,
             "tool_tip_radius": rack.tip_radius,
-            "tool_protuberance": rack.protuberance or None,
+            "tool_protuberance": table.tool_protuberance or None,
         },
     )
     if cutter is not None:
