@@ -71,7 +71,8 @@ def drawing_data(scene: Scene, design: DriveDesign) -> DrawingData:
     gears, meshes, unverified = list[GearData](), list[MeshData](), list[str]()
     mates = dict[str, list[str]]()
     for k, (pair, name) in enumerate(zip(pairs, names, strict=True)):
-        _check_whole(pair, name)
+        if any(not float(gear.teeth).is_integer() for gear in pair.gears):
+            raise SolveError(f"the gears of stage {name.stage} have no whole numbers of teeth")
         stage = meshed.stage_tables[k]
         tables = gear_tables(stage, meshed.gears, meshed.material, k, materials[k])
         ends = [
@@ -91,6 +92,7 @@ def drawing_data(scene: Scene, design: DriveDesign) -> DrawingData:
                 "gear": called,
                 "hand": hand_of(gear, member, turned[k]),
                 "tolerances": f"ISO 1328-1:{edition}, {grade}",
+                "tool": _tool(gear, tables[member]),
                 "material": _material(design, k + 1, MEMBERS[member], tables[member]),
             }
             words |= _relief(scene, design, MEMBERS[member])
@@ -105,38 +107,26 @@ def drawing_data(scene: Scene, design: DriveDesign) -> DrawingData:
     )
 
 
-def _check_whole(pair: GearPair, name: MeshName) -> None:
-    """Raise SolveError for teeth that are no whole number."""
-    if any(not float(gear.teeth).is_integer() for gear in pair.gears):
-        raise SolveError(f"the gears of stage {name.stage} have no whole numbers of teeth")
-
-
 def _accuracy(scene: Scene, table: GearTable, member: int) -> tuple[int, str]:
     """Grade and edition of ISO 1328-1 of a gear."""
     asked, rated = scene.drawing, scene.rating
     assert asked is not None
     iso = rated.iso6336 if rated is not None and rated.by_iso6336 else None
-    edition = asked.tolerances or (iso.tolerances if iso else USUAL_EDITION)
-    if asked.accuracy_grade is not None:
-        return asked.accuracy_grade, edition
-    if table.accuracy_grade is not None:
-        return table.accuracy_grade, edition
-    return (iso.accuracy_grade[member] if iso and iso.accuracy_grade else USUAL_GRADE), edition
+    usual = iso.accuracy_grade[member] if iso and iso.accuracy_grade else USUAL_GRADE
+    grades = (asked.accuracy_grade, table.accuracy_grade, usual)
+    grade = next(each for each in grades if each is not None)
+    return grade, asked.tolerances or (iso.tolerances if iso else USUAL_EDITION)
 
 
 def _gear(gear: Gear, ends: Ends, asked: DrawingTable, words: dict[str, Any]) -> GearData:
     """The data of a gear; words: names and tolerances by their keys."""
-    rack, size = gear.rack, {}
-    for name, value in (
-        ("reference", gear.reference_diameter),
-        ("base", gear.base_diameter),
-        ("tip", gear.tip_diameter),
-        ("form", form_diameter(ends[0])),
-        ("root", gear.root_diameter),
-        ("upper_root", _as_cut(ends[0]).root_diameter),
-        ("lower_root", _as_cut(ends[1]).root_diameter),
-    ):
-        size[f"{name}_diameter_mm"] = abs(float(value))
+    rack, size = gear.rack, {"form_diameter_mm": form_diameter(ends[0])}
+    for name in ("reference_diameter", "base_diameter", "tip_diameter", "root_diameter"):
+        size[f"{name}_mm"] = getattr(gear, name)
+    for end, at in zip(("upper", "lower"), ends, strict=True):
+        cut = replace(at, profile_shift=at.generating_shift, thickness_allowance=0.0)
+        size[f"{end}_root_diameter_mm"] = cut.root_diameter
+    size = {name: abs(float(value)) for name, value in size.items()}
     bare = replace(gear, thickness_allowance=0.0)
     wide, height = map(float, chord(bare))
     by = "own A_sne, tolerance " * bool(gear.thickness_allowance) + asked.fit
@@ -151,7 +141,6 @@ def _gear(gear: Gear, ends: Ends, asked: DrawingTable, words: dict[str, Any]) ->
         upper_generating_shift=float(ends[0].generating_shift),
         lower_generating_shift=float(ends[1].generating_shift),
         face_width_mm=float(gear.width),
-        tool=_tool(gear),
         tip_form_diameter_mm=chamfered,
         tooth_thickness_mm=float(normal_thickness(bare, gear.reference_diameter)),
         allowances=by,
@@ -163,18 +152,13 @@ def _gear(gear: Gear, ends: Ends, asked: DrawingTable, words: dict[str, Any]) ->
     )
 
 
-def _tool(gear: Gear) -> str:
+def _tool(gear: Gear, table: GearTable) -> str:
     """The tool of a gear: addendum and tip radius, protuberance, teeth of a cutter."""
-    rack, cutter = gear.rack, gear.cutter
-    if cutter is not None:
+    if (cutter := gear.cutter) is not None:
         return f"{cutter.addendum:g}/{cutter.tip_radius:g}, cutter z {cutter.teeth:g}"
-    ends = f", pr {rack.protuberance:g}" if rack.protuberance else ""
-    return f"{rack.dedendum:g}/{rack.tip_radius:g}{ends}"
-
-
-def _as_cut(gear: Gear) -> Gear:
-    """A gear whose nominal shift is the one that its tool has: its root is the one that is cut."""
-    return replace(gear, profile_shift=gear.generating_shift, thickness_allowance=0.0)
+    pr, q = (float(amount or 0) for amount in (table.tool_protuberance, table.grinding_allowance))
+    ends = f", pr {pr:g}" * bool(pr) + f", q {q:g}" * bool(q)
+    return f"{gear.rack.dedendum:g}/{gear.rack.tip_radius:g}{ends}"
 
 
 def _measures(bare: Gear, ends: Ends, asked: DrawingTable) -> dict[str, Any]:
@@ -217,8 +201,10 @@ def _mesh(pair: GearPair, name: MeshName, ends: list[Ends], asked: DrawingTable)
         for k in (0, 1)
         for off in (low, high)
     ]
-    backlash = [float(circumferential_backlash(each)) for each in ends_of_play]
-    normal = [float(normal_backlash(each)) for each in ends_of_play]
+    backlash, normal = (
+        [float(law(each)) for each in ends_of_play]
+        for law in (circumferential_backlash, normal_backlash)
+    )
     return MeshData(
         mesh=name.title,
         centre_distance_mm=distance,
@@ -236,9 +222,8 @@ def _material(design: DriveDesign, mesh: int, member: str, table: GearTable) -> 
     """Material of a gear with its hardness, as a rating names it, else as the file does."""
     rows = design.rating.gears if design.rating else ()
     rated = [row.material for row in rows if (row.stage, row.member) == (mesh, member)]
-    if rated:
-        return rated[0]
-    return iso_material.material(table) if table.steel or table.iso_material else ""
+    usual = iso_material.material(table) if table.steel or table.iso_material else ""
+    return next(iter(rated), usual)
 
 
 def _relief(scene: Scene, design: DriveDesign, member: str) -> dict[str, float]:

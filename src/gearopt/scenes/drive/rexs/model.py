@@ -65,6 +65,8 @@ UNITS = {  # unit of the schema: other units of files, of its size
     "none": {"-": "1"},
 }
 TOML_UNITS = {"1 / min": "rpm", "kg / dm^3": "kg/dm^3", "mm^2 / s": "mm^2/s", "mum": "um"}
+GEARS = ("cylindrical_gear", "ring_gear")
+BETA = "helix_angle_reference_diameter"
 DIGITS = 40  # at most, of a number
 PLACES = 20  # before and after the point, of numbers without an exponent
 SMALL = 12  # digits after the point of what follows from lengths
@@ -208,7 +210,8 @@ def keys_of(
     """Keys of a problem file that components say alike; m: normal module [mm].
 
     The first attribute of a key counts. Numbers without a unit, and lengths in modules, that are 0
-    are left out: it is what is usual, but of radii. type: of the attributes, where not theirs. leave: a key.
+    are left out: it is what is usual, but of radii. type: of the attributes, where not theirs.
+    leave: a key.
     """
     keys: Keys = {}
     for name, spec in SPECS[type or alike[0].type].items() if alike else ():

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from gearopt.errors import SceneError
-from gearopt.scenes.drive.rexs.drive_read import tables_of
 from gearopt.scenes.drive.rexs.files import read_model
 from gearopt.scenes.drive.rexs.model import Model, Said
+from gearopt.scenes.drive.rexs.tables import tables_of
 from gearopt.scenes.reading.load import FORMAT, read
 from gearopt.scenes.reading.toml_writing import cut, dotted, toml_tables
 
