@@ -14,6 +14,7 @@ from gearopt.scenes.reading.toml_writing import cut, dotted, toml_tables
 
 NOTHING = "# needed, and the REXS file does not say it"
 RULES = 60  # characters of a name
+LONGEST = 1000  # of a place, and of what is wrong there
 VECTORS = ("u_axis_vector", "w_axis_vector", "reference_component_for_position")
 WIDTH = 99  # characters of a line
 
@@ -32,8 +33,8 @@ def read_rexs(path: str | Path) -> str:
         head = {"gearopt": FORMAT, "kind": "drive", **_titles(model, path)}
         _check(head | tables)
     except SceneError as error:
-        rest = error.key, error.value, error.rule, error.remedy
-        raise SceneError(str(path), *rest) from None
+        key, rule = (cut(_line(text), LONGEST) for text in (error.key, error.rule))
+        raise SceneError(str(path), key, error.value, rule, error.remedy) from None
     comments = [*remarks, *_unplaced(model)]
     if comments:
         about = f"{Path(path).name}, REXS {model.version}: what has no place here, or is changed"
@@ -44,8 +45,12 @@ def read_rexs(path: str | Path) -> str:
 
 def _comment(line: str) -> str:
     """A line as a comment of several lines, without what no comment may hold."""
-    words = "".join(c if c.isprintable() else " " for c in line)
-    return textwrap.fill(words, WIDTH, initial_indent="# ", subsequent_indent="#   ")
+    return textwrap.fill(_line(line), WIDTH, initial_indent="# ", subsequent_indent="#   ")
+
+
+def _line(text: str) -> str:
+    """A text in one line, without characters that no line may hold."""
+    return "".join(c if c.isprintable() else " " for c in text)
 
 
 def _titles(model: Model, path: str | Path) -> dict[str, str]:
@@ -53,7 +58,7 @@ def _titles(model: Model, path: str | Path) -> dict[str, str]:
     title = units[0].word("model_name") or units[0].name if units else ""
     source = f"REXS {model.version}" + f" of {model.source}" * bool(model.source)
     names = {"title": cut(title or Path(path).stem, RULES), "source": source}
-    return {key: " ".join(filter(str.isprintable, value.split())) for key, value in names.items()}
+    return {key: " ".join(_line(value).split()) for key, value in names.items()}
 
 
 def _written(value: Any) -> tuple[Any, str]:
