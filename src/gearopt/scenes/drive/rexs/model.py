@@ -5,6 +5,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field
 from decimal import Decimal, InvalidOperation
+from functools import cached_property
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any
@@ -249,12 +250,21 @@ class Model:
     relations: Sequence[Relation]
     cases: Sequence[Mapping[int, Component]] = ()
 
+    @cached_property
+    def _by_role(self) -> dict[tuple[str, str, int], list[Mapping[str, int]]]:
+        """Relations by their type and a component of a role."""
+        known: dict[tuple[str, str, int], list[Mapping[str, int]]] = {}
+        for relation in self.relations:
+            for role, number in relation.refs.items():
+                known.setdefault((relation.type, role, number), []).append(relation.refs)
+        return known
+
     def of_type(self, *types: str) -> list[Component]:
         """Components of some types, in the order of the file."""
         return [c for c in self.components.values() if c.type in types]
 
     def related(self, type: str, role: str, of: int, other: str, *kinds: str) -> list[Component]:
         """Components of a role, of some types, in relations where `of` has another role."""
-        refs = [r.refs for r in self.relations if r.type == type and r.refs.get(role) == of]
+        refs = self._by_role.get((type, role, of), ())
         parts = [self.components[each[other]] for each in refs if other in each]
         return [c for c in parts if not kinds or c.type in kinds]
