@@ -174,6 +174,14 @@ BROKEN = {
         lambda: as_json(unit()).replace('"unit": "mm"', '"unit": "m\\nm\\u001b[31m"', 1),
         "is in m m [31m, and the unit of the schema is mm",
     ),
+    "two rings": (
+        of_planets(
+            lambda m: m["components"].update(
+                {i: ("ring_gear", m["components"][i][1]) for i in (20, 24, 28)}
+            )
+        ),
+        "meshes two rings",
+    ),
     "no flank": (besides("flank", gear=24, left=45, right=62), "is no flank of component 24"),
     "own rating": (of(1, custom_gearopt_rating="{iso6336 = 3}"), "has no table as iso6336"),
     "own attribute": (of(21, custom_gearopt_gear="{x"), 'custom_gearopt_gear = "{x": is no table'),

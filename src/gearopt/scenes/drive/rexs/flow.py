@@ -99,6 +99,7 @@ def _meshing(model: Model, stage: Component) -> tuple[Component, Component]:
         odd = next((g for g in gears if g.type not in GEARS), None)
         rule = f"meshes {odd}, which is no cylindrical gear" if odd else ""
         rule = "has one gear twice" if gears[0] is gears[1] else rule
+        rule = "meshes two rings" if {g.type for g in gears} == {"ring_gear"} else rule
     if rule:
         raise wrong(stage, None, rule, "Give it one relation of type stage, with two gears")
     same(gears, "normal_module")
