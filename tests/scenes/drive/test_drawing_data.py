@@ -50,6 +50,15 @@ def test_a_planetary_stage_has_the_measures_of_its_report(wind, gear, ball, k, b
     )
 
 
+def test_the_protuberance_is_that_of_the_tool():
+    """Not what remains of it after grinding, 0.01."""
+    keys = {"tool_protuberance": 0.02, "grinding_allowance": 0.01}
+    changes = {f"stage[1].wheel.{key}": value for key, value in keys.items()}
+    result = gearopt.rate(PROBLEMS / "two_stages_rated.toml", {"drawing": {}} | changes)
+    rows = drive_design(result.design).drawing.gears
+    assert next(row.tool for row in rows if row.gear == "wheel 1").endswith(", pr 0.02, q 0.01")
+
+
 def test_backlash_of_a_planetary_stage_is_that_of_its_report(wind):
     for mesh, printed in (("sun and planet", (0.283, 0.490)), ("planet and ring", (0.463, 0.708))):
         row = wind[f"stage 1, {mesh}"]
