@@ -83,7 +83,7 @@ def material_of(model: Model, gear: Component) -> list[Component]:
 def gear_keys(model: Model, gear: Component, remarks: list[str]) -> Keys:
     """Keys of a gear, but its module, teeth, helix and width."""
     sides, m = flanks(model, gear), gear.needed("normal_module")
-    own, teeth = custom(gear, "gear"), keys_of(sides, m=m)
+    kept, teeth = custom(gear, "gear"), keys_of(sides, m=m)
     if not any(flank.has(name) for flank in sides for name in SHIFTS):
         remarks.append(f"{gear}: no profile shift is said: 0 is taken")
     addendum = teeth["addendum"].value if "addendum" in teeth else Decimal(repr(ISO_53_A.addendum))
@@ -91,9 +91,9 @@ def gear_keys(model: Model, gear: Component, remarks: list[str]) -> Keys:
         teeth.pop("addendum", None)
     shift = teeth["profile_shift"].value if "profile_shift" in teeth else Decimal(0)
     k = _tip_alteration(gear, m, shift, addendum, remarks)
-    if k and "tip_alteration" not in own:
+    if k and "tip_alteration" not in kept:
         teeth["tip_alteration"] = Said(k, gear.at("tip_diameter"))
-    keys = own | teeth | _thinner(gear, sides) | _tool(model, gear, sides, remarks)
+    keys = kept | teeth | _thinner(gear, sides) | _tool(model, gear, sides, remarks)
     keys |= keys_of([gear])
     if (grade := gear.word(GRADE)) is not None:
         keys["accuracy_grade"] = Said(
