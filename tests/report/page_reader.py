@@ -66,6 +66,11 @@ def extents(svg):
             yield text.text, np.array([x, y]), np.array(half if angle == 0.0 else half[::-1])
 
 
+def on_screen(html):
+    """A page without what it says on paper alone."""
+    return re.sub(r'<(p|span) class="on-paper">.*?</\1>', "", html, flags=re.S)
+
+
 def without_input(html):
     """A page without the numbers of the file, which stand as they were written."""
     return re.sub(r"<details>\s*<summary><h2>Input data.*?</details>", "", html, flags=re.S)

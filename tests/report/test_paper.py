@@ -7,7 +7,7 @@ import sys
 import tomllib
 from dataclasses import replace
 from html import unescape
-from itertools import combinations
+from itertools import combinations, pairwise, product
 from pathlib import Path
 
 import pytest
@@ -16,6 +16,7 @@ from page_reader import ATTACK, Reader
 
 import gearopt
 from gearopt.errors import GearoptError
+from gearopt.report.drawing.sheet import Drawing, Row
 from gearopt.report.pages import pdf
 from gearopt.report.pages.result import page, sections
 
@@ -55,6 +56,24 @@ def test_hostile_texts_do_not_run():
     assert len(boxes) == 4 and boxes[3] == '"Page " counter(page) " of " counter(pages)'
     for box in boxes[:3]:
         assert re.fullmatch(r'"([A-Za-z0-9]|\\[0-9a-f]+ )*"', box)
+
+
+def test_what_is_not_printed_is_said_with_its_marks():
+    """Two factors of pinion and wheel, or of the mesh, in two stages, as the page marks them."""
+    html = page(cases.train(), "")
+    (said,) = re.findall(r'<p class="on-paper">(.*?)</p>', html)
+    marks = len(re.findall(r"<td[^>]*>[\d.]+\nunverified</td>", html))
+    assert f"{marks} of the values not printed are marked unverified." in said
+    assert "Factors" in said and "appendix = true" in said and "I and J" in said
+    assert "<p class=on-paper>" not in page(headed(appendix=True), "").replace('"', "")
+
+
+def test_the_scale_on_paper_is_a_usual_one():
+    """A body of 200 mm is 200/1.5 mm long at 1:1.5; a pixel of CSS is 25.4/96 mm."""
+    body = Drawing("", 600.0, 300.0, "", frame=((0.0, 0.0), (200.0, 100.0)))
+    row = Row([body], to_scale=True)
+    assert row.scale == "1:1.5" and row.printed * 600.0 * 25.4 / 96.0 == pytest.approx(200.0 / 1.5)
+    assert Row([body]).scale == ""
 
 
 def test_an_edited_result_without_a_table_has_no_block():
@@ -162,38 +181,80 @@ def _solved(name):
     path = Path(f"problems/{name}.toml")
     if name == "two_stages_rated":
         return gearopt.rate(path)
-    return gearopt.solve(path, top=10, prices=1.0)
+    more = {} if name == "unit_15_kw_pair" else {"top": 10, "prices": 1.0}
+    return gearopt.solve(path, **more)
 
 
 @pytest.mark.slow
 @PRINTING
 @pytest.mark.parametrize(
-    ("name", "most"), [("two_stages_rated", 3), ("unit_15_kw", 3), ("pair_from_duty", 6)]
+    "name",
+    [
+        *("two_stages_rated", "unit_15_kw", "unit_in_box", "elevator_by_both"),
+        *("planetary_gearhead", "pair_from_duty", "unit_15_kw_pair"),
+    ],
 )
-def test_every_table_is_on_paper_whole(name, most, tmp_path):
-    """Two stages on three sheets at most; no word beyond the margins or under another one."""
+def test_a_report_is_of_three_sheets_at_most(name, tmp_path):
+    """All but the appendix is there; no word beyond the margins or under another one."""
     plain = _solved(name)
     for paper, across in (("A4", 595.0), ("Letter", 612.0)):
         head = {"number": "4711", "paper": paper}
         result = replace(plain, asked={**plain.asked, "report": head})
         result.to_pdf(tmp_path / "r.pdf")
         sheets = list(words_of(tmp_path / "r.pdf"))
-        assert 1 <= len(sheets) <= most
+        assert 1 <= len(sheets) <= 3
         for k, (width, words) in enumerate(sheets, 1):
             assert abs(width - across) < 1.0
             texts = [word[4] for word in words]
             assert "4711" in texts and f"Page {k} of {len(sheets)}" in " ".join(texts)
             assert all(40.0 < word[0] and word[2] < width - 40.0 for word in words)
             twice = [(a, b) for a, b in combinations(words, 2) if covers(a, b) > 0.5]
-            assert not [pair for pair in twice if pair[0][4] != pair[1][4]]  # a halo is a word
-        _check_tables(result, "".join(word[4] for _, words in sheets for word in words))
+            alike = ((a[4] in b[4] or b[4] in a[4]) for a, b in twice)
+            assert all(alike)  # a halo is the word again, or letters of it
+        _check_tables(result, joined(sheets))
 
 
-def _check_tables(result, printed):
+def joined(sheets):
+    return "".join(word[4] for _, words in sheets for word in words)
+
+
+@pytest.mark.slow
+@PRINTING
+def test_the_appendix_is_printed_when_asked(tmp_path):
+    plain = _solved("two_stages_rated")
+    result = replace(plain, asked={**plain.asked, "report": {"appendix": True}})
+    result.to_pdf(tmp_path / "r.pdf")
+    printed = joined(words_of(tmp_path / "r.pdf"))
+    _check_tables(result, printed, whole=True)
+    assert printed.count("unverified") > 6 and "Notprinted" not in printed
+
+
+@pytest.mark.slow
+@PRINTING
+@pytest.mark.parametrize("name", ["two_stages_rated", "elevator_by_both"])
+def test_the_scale_is_that_of_the_sheet(name, tmp_path):
+    """The numbers of shafts stand over their axes, whose distances the design gives."""
+    result = _solved(name)
+    result.to_pdf(tmp_path / "r.pdf")
+    words = next(w for _, w in words_of(tmp_path / "r.pdf") if any(v[4] == "Scale" for v in w))
+    (scale,) = [b[4] for a, b in pairwise(words) if a[4] == "Scale"]
+    level = [[v for v in words if v[4] == str(k) and v[3] - v[1] < 8.0] for k in (1, 2, 3)]
+    middles = [[(0.5 * (v[0] + v[2]), v[1]) for v in each] for each in level]
+    a1, a2 = (stage["centre_distance_mm"] for stage in result.design["stages"])
+    size = 72.0 / 25.4 / float(scale.removeprefix("1:"))
+    rows = product(*middles)
+    seen = [(p[0], q[0], r[0]) for p, q, r in rows if max(abs(p[1] - w[1]) for w in (q, r)) < 1.0]
+    assert any(abs(q - p - a1 * size) < 0.3 and abs(r - q - a2 * size) < 0.3 for p, q, r in seen)
+
+
+def _check_tables(result, printed, whole=False):
     """Every head and label of the tables of printed sections is there."""
     for section in sections(result):
-        for table in () if section.screen else section.tables:
+        for table in section.tables:
             heads, rows = table.on_page
-            for text in () if table.folded else (*heads, *(row[0].text for row in rows)):
+            left_out = not whole and (section.appendix or table.appendix)
+            for text in (
+                () if table.folded or left_out else (*heads, *(row[0].text for row in rows))
+            ):
                 for word in text.split():
                     assert word in printed, (table.name, text)

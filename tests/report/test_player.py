@@ -114,7 +114,7 @@ def test_readings_have_their_decimals_and_unit():
 
 def page(*sections):
     moves = any(section.animations for section in sections)
-    given = {"sections": sections, "source": None, "moves": moves, "plots": False}
+    given = {"sections": sections, "left_out": "", "source": None, "moves": moves, "plots": False}
     return render("result.html", "A page", "", {"gearopt": "0"}, "", {}, **given)
 
 

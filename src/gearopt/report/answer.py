@@ -172,7 +172,10 @@ def limits(result: Result, measures: Measures) -> Section | None:
             "Limits that determine the result may stay below 100 %, as teeth and modules come in "
             "steps.",
         )
-    return Section("Limits", words=words, tables=(table,), half=True, terminal=(table,))
+    rated = "rating" in result.design  # tables of it have safety factors and their utilisation
+    return Section(
+        "Limits", words=words, tables=(table,), half=True, appendix=rated, terminal=(table,)
+    )
 
 
 def _utilisation(used: float | None) -> Cell:
@@ -271,7 +274,7 @@ def proven(result: Result, measures: Measures) -> Section:
     columns = [_column(part, measures) for part in parts]
     rows = [[n, *row] for n, *row in zip(ROWS, *columns, strict=True) if any(c != "" for c in row)]
     hidden = ("value", "bound")  # key figures, or in the design
-    tables = [Table("proof", heads, rows, csv_only=hidden, across=True)]
+    tables = [Table("proof", heads, rows, csv_only=hidden, across=True, appendix=True)]
     if checks := _checks(result):
         tables.append(checks)
     words = [meaning(result), *map(measures.words, proof(result, measures))]
@@ -333,7 +336,8 @@ def _checks(result: Result) -> Table | None:
                 spoken.append(rows[-1][0])
     if not rows:
         return None
-    return Table("checks", ("", ""), rows, csv_only=spoken, folded=len(spoken) == len(rows))
+    folded = len(spoken) == len(rows)
+    return Table("checks", ("", ""), rows, csv_only=spoken, folded=folded, appendix=True)
 
 
 def assumed(result: Result, lists: str = "--html and --json list") -> list[str]:
@@ -423,7 +427,7 @@ def progress(result: Result, measures: Measures) -> Section | None:
     )
     words = "Best value so far" + (" and its bound" if bound else "")
     figure = Figure(traces, plot, f"{words} against wall time.")
-    return Section("Progress", figures=(figure,), screen=True)
+    return Section("Progress", figures=(figure,), appendix=True)
 
 
 def _converted(step: dict[str, Any], unit: str, measures: Measures) -> dict[str, Any]:

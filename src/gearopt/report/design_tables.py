@@ -219,7 +219,9 @@ def trains(result: Result, measures: Measures) -> Section | None:
     whole = best.proof.get("method") == "exhausted" and (best.gap or 0.0) <= EXACT
     words = words if whole else "The best trains of those evaluated; others may be better."
     short = (table,) if result.value is not None else ()
-    return Section("Next best trains", words=(words,), tables=(table,), terminal=short, screen=True)
+    return Section(
+        "Next best trains", words=(words,), tables=(table,), terminal=short, appendix=True
+    )
 
 
 def _train_row(

@@ -84,7 +84,9 @@ def of_influences(
         name = objective(result)[0]
         words.append(f"Small changes of these numbers do not change the {name}: {', '.join(idle)}.")
     terminal = (*tables, "\n".join(words))
-    return Section("Sensitivities", words=words, tables=tables, half=True, terminal=terminal)
+    return Section(
+        "Sensitivities", words=words, tables=tables, half=True, appendix=True, terminal=terminal
+    )
 
 
 def _is_known(influence: Mapping[str, Any]) -> bool:

@@ -18,7 +18,8 @@ class Figure:
     """A plot: its plotly data and layout, and its caption.
 
     still: what is seen before it is drawn, and in print; of a view in space without WebGL, too.
-    follows: the name of an animation of the page, whose moment lines mark on the x axis.
+    follows: the name of an animation of the page, whose moment lines mark on the x axis. appendix:
+    as of a `Section`.
     """
 
     data: list[dict[str, Any]]
@@ -26,6 +27,7 @@ class Figure:
     caption: str
     still: Drawing | None = None
     follows: str = ""
+    appendix: bool = False
 
     @property
     def space(self) -> bool:

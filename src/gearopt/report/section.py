@@ -53,7 +53,7 @@ class Table:
     page, too, but for read_only. short: other heads on the terminal. left, wrap: how many columns
     stand on the left there, and how many may break over lines. texts: heads of columns of words,
     which stand on the left of the page. across: what it lists, as
-    stages, stands side by side, each in a column.
+    stages, stands side by side, each in a column. appendix: as of a `Section`.
     """
 
     name: str
@@ -71,6 +71,7 @@ class Table:
     wrap: int = 1
     texts: Collection[str] = ()
     across: bool = False
+    appendix: bool = False
 
     def without(self, hidden: Collection[str]) -> tuple[list[str], list[list[Any]]]:
         """Heads and rows without the columns and rows of these names."""
@@ -157,8 +158,9 @@ class Section:
     """A heading, then key figures, sentences, drawings at one scale, animations, plots, tables.
 
     half: two such sections stand side by side where the page is wide. folded: the page shows its
-    heading, and the rest when asked; paper has all of it. screen: what a designer needs and a
-    customer does not, which is not printed. terminal: the sentences and
+    heading, and the rest when asked; paper has all of it. appendix: what only a specialist
+    checks, which is printed when the file asks for it. to_scale: its drawings are of bodies.
+    hint: what a file may ask for, after the first sentence on a screen. terminal: the sentences and
     tables that the terminal shows of it, in its order. notes: sentences that come before all else,
     in a colour that is not missed.
     """
@@ -172,14 +174,21 @@ class Section:
     tables: Sequence[Table] = ()
     half: bool = False
     folded: bool = False
-    screen: bool = False
+    appendix: bool = False
+    to_scale: bool = False
+    hint: str = ""
     terminal: Sequence[str | Text | Table] = ()
     notes: Sequence[str] = ()
 
     @property
+    def plain(self) -> bool:
+        """Whether it has sentences alone."""
+        return not any((self.tiles, self.drawings, self.animations, self.figures, self.tables))
+
+    @property
     def row(self) -> Row:
         """The drawings as they stand side by side."""
-        return Row(self.drawings)
+        return Row(self.drawings, self.to_scale)
 
 
 def shown(value: Any) -> Cell:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 import rating_cases as cases
 from campaigns import few
-from page_reader import Reader, without_input
+from page_reader import Reader, on_screen, without_input
 from read_numbers import repeated
 from rich.console import Console
 
@@ -59,7 +59,7 @@ def rows(result, name, measures=METRIC):
 
 
 def text(html):
-    return " ".join(" ".join(Reader(html).text).split())
+    return " ".join(" ".join(Reader(on_screen(html)).text).split())
 
 
 @pytest.mark.parametrize("key", BOOK)
@@ -302,7 +302,7 @@ def test_damages_of_the_levels_add_up_to_the_sum_of_a_gear():
 
 
 def test_unverified_stands_beside_every_value_that_is():
-    html = page(cases.train(), "")
+    html = on_screen(page(cases.train(), ""))
     cells = re.findall(r"<td[^>]*>([\d.]+)\nunverified</td>", html)
     unsure = [f for f in cases.train().design["rating"]["factors"] if not f["verified"]]
     assert len(cells) == sum(1 if f.get("wheel") is None else 2 for f in unsure) == 6

@@ -60,7 +60,7 @@ def section(result: Result, measures: Measures) -> Section | None:
         side_view(layout, windows[1], scale, "z", measures),
         side_view(layout, windows[2], scale, "y", measures),
     )
-    return Section("Layout", words=words, drawings=views)
+    return Section("Layout", words=words, drawings=views, to_scale=True)
 
 
 def beside(designs: Mapping[str, LayoutDesign], measures: Measures) -> tuple[Drawing, ...]:

@@ -55,7 +55,7 @@ def section(result: Result, measures: Measures) -> Section | None:
             f"{WORDS.format(names=below, turns=turns)}{helical}{alone}.{SEVERAL * (len(rows) > 1)}",
         ),
         drawings=tuple(drawing for _, drawing in shown),
-        screen=True,
+        appendix=True,
     )
 
 

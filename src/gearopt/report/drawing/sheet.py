@@ -25,10 +25,16 @@ MAX_POINTS = 1_000_000  # points or lines of one mark: more than any drawing has
 COLOURS = 8  # --series-1 ... in frame.css, distinct for the colour-blind
 SERIES_OF_MEMBERS = (1, 4)  # the colours of pinion and wheel among them
 Point = tuple[float, float]
-SHEET = 660.0  # px across an A4 sheet inside its margins
+SHEET = 660.0  # px of an A4 sheet that a single drawing or plot may take
+ACROSS = 680.0  # px across an A4 sheet inside its margins: 180 mm
 GUTTER = 18.0  # px between drawings, as in drawing.css
 TALL = 330.0  # px of a sheet that drawings may take, where their text stays legible
-LEGIBLE = 0.58  # of a text of 12 px: 5.2 pt on paper
+LEGIBLE = 0.57  # of a text of 12 px: 5.1 pt on paper
+LARGER = 1.2  # to which drawings may grow so that their scale is a usual one
+PX = 25.4 / 96.0  # mm on paper, by definition of CSS
+PARTS = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 7.0, 8.0)
+STEPS = [part * ten for ten in (1.0, 10.0, 100.0) for part in PARTS]
+SCALES = {f"{n:g}:1": n for n in STEPS} | {f"1:{n:g}": 1.0 / n for n in STEPS}  # on paper
 
 
 @dataclass(frozen=True)
@@ -474,9 +480,13 @@ def series(k: int) -> str:
 
 @dataclass(frozen=True)
 class Row:
-    """Drawings that stand side by side where there is room, and shrink alike."""
+    """Drawings that stand side by side where there is room, and shrink alike.
+
+    to_scale: they show bodies at one scale, which is named on paper.
+    """
 
     drawings: Sequence[Drawing]
+    to_scale: bool = False
 
     @property
     def widest(self) -> float:
@@ -485,21 +495,43 @@ class Row:
 
     @property
     def sheet(self) -> float:
-        """Width of an A4 sheet inside its margins [px]."""
+        """Width of an A4 sheet that a drawing may take [px]."""
         return SHEET
 
     @property
     def printed(self) -> float:
-        """Factor by which the drawings shrink in print so that all stand side by side, or two.
+        """Factor by which the drawings shrink in print."""
+        return self._on_paper[0]
 
-        They leave room on the sheet for other things, but their text stays legible.
+    @property
+    def scale(self) -> str:
+        """The scale that this gives, as 1:2.5; "" where there is none."""
+        return self._on_paper[1]
+
+    @property
+    def _on_paper(self) -> tuple[float, str]:
+        """Factor of print and scale: the largest usual one at which the text stays legible."""
+        wanted, most = self._fitting
+        if not self.to_scale:
+            return wanted, ""
+        (left, _), (right, _) = self.drawings[0].frame  # mm
+        full = PX * self.drawings[0].width / (right - left)  # the scale without shrinking
+        largest = full * min(most, LARGER * wanted, ACROSS / self.widest)
+        size, name = max((size, name) for name, size in SCALES.items() if size <= largest)
+        return (size / full, name) if size >= LEGIBLE * full else (wanted, "")
+
+    @property
+    def _fitting(self) -> tuple[float, float]:
+        """Factor by which all stand side by side, or two, and the largest that lets them.
+
+        The first leaves room on the sheet for other things, but text stays legible.
         """
         low = max(TALL / max(drawing.height for drawing in self.drawings), LEGIBLE)
         for some in (self.drawings, self.drawings[:2]):
             wide = sum(drawing.width + GUTTER for drawing in some) - GUTTER
-            if (share := SHEET / wide) > LEGIBLE:
-                return min(1.0, share, low)
-        return min(1.0, low)
+            if (share := ACROSS / wide) > LEGIBLE:
+                return min(1.0, share, low), min(1.0, share)
+        return min(1.0, low), 1.0
 
 
 def packed(kind: str, values: Iterable[float]) -> dict[str, str]:

@@ -44,11 +44,8 @@ NOT_SIZED = (
 )
 
 
-def section(result: Result, measures: Measures, hint: str = "") -> Section | None:
-    """Draw both views at one scale; None without gears or where they are laid out.
-
-    hint: what a file may ask for beside.
-    """
+def section(result: Result, measures: Measures) -> Section | None:
+    """Draw both views at one scale; None without gears or where they are laid out."""
     drawn = views(result.design.get("stages", ()), measures)
     if not drawn or result.design.get("layout"):
         return None
@@ -65,7 +62,7 @@ def section(result: Result, measures: Measures, hint: str = "") -> Section | Non
     total = f" (the total length of the design is {unfolded}over reference circles)"
     total = ", outside diameters of rings" if rings else total
     plural = f"modules {sign} in {unit}" if unit == "mm" else f"{name}es {sign} in {unit}"
-    plane = f"shafts are drawn in one plane{lie}: their positions are not optimised{gaps}.{hint}"
+    plane = f"shafts are drawn in one plane{lie}: their positions are not optimised{gaps}."
     of_one_axis = single and picked[0].is_set
     words = (
         *([] if of_one_axis else [f"{'Both' if single else 'All'} {plane}"]),
@@ -75,7 +72,7 @@ def section(result: Result, measures: Measures, hint: str = "") -> Section | Non
         f"are not drawn.{NOT_SIZED.format(plates) * rings}",
     )
     heading = "Gears on their axis" if of_one_axis else "Gears with all shafts in one plane"
-    return Section(heading, words=words, drawings=drawn)
+    return Section(heading, words=words, drawings=drawn, to_scale=True)
 
 
 def beside(

@@ -1,15 +1,19 @@
 """The page of a result: drawings, a solid to turn, progress, numbers, and how sure they are."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.report.answer import opening
 from gearopt.report.kinds import pages_of_result
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.pages.frame import render
+from gearopt.report.pages.title_block import head
 from gearopt.report.section import Section, Table
-from gearopt.report.words import title
+from gearopt.report.words import series_of, title
 from gearopt.scenes.reading.toml_writing import short
+
+MARK = "unverified"
 
 
 def sections(result: Result, measures: Measures = METRIC) -> list[Section]:
@@ -41,8 +45,32 @@ def page_of(shown: Sequence[Section], result: Result, command: str, measures: Me
         plots=any(section.figures for section in shown),
         moves=any(section.animations for section in shown),
         sections=shown,
+        left_out=left_out(shown, result.asked),
         source=_source(result),
     )
+
+
+def left_out(shown: Sequence[Section], asked: Mapping[str, Any]) -> str:
+    """What is not printed, how to have it, and what of it is unverified; "" with all."""
+    whole = [section for section in shown if section.appendix]
+    rest = [section for section in shown if not section.appendix]
+    parts = [t for section in rest for t in section.tables if t.appendix and not t.folded]
+    names = [section.heading for section in whole]
+    names += [f"more on {s.heading}" for s in rest if any(f.appendix for f in s.figures)]
+    names += [f"the table of {table.name}" for table in parts]
+    if head(asked).get("appendix") is True or not names:
+        return ""
+    tables = [*parts, *(table for section in whole for table in section.tables if not table.folded)]
+    marks = sum(MARK in c.text for table in tables for row in table.on_page[1] for c in row)
+    words = [
+        f"Not printed: {series_of(names)}. To print all, write appendix = true in the table "
+        "[report] of the problem file."
+    ]
+    if marks:
+        are = "is" if marks == 1 else "are"
+        words.append(f"{marks} of the values not printed {are} marked {MARK}.")
+    said = (text for section in whole for text in (*section.notes, *section.words))
+    return " ".join([*words, *(text for text in said if MARK in text.lower())])
 
 
 def tables(result: Result, measures: Measures = METRIC) -> dict[str, str]:

@@ -21,8 +21,8 @@ LONGEST = 70  # characters of a text in a margin, which is one line
 
 def block(asked: Mapping[str, Any]) -> dict[str, str]:
     """What a title block says, by its labels; asked: the tables of the file."""
-    head = _head(asked)
-    return {label: str(head[key]) for key, label in LABELS.items() if head.get(key)}
+    table = head(asked)
+    return {label: str(table[key]) for key, label in LABELS.items() if table.get(key)}
 
 
 def margins(title: str, asked: Mapping[str, Any]) -> str:
@@ -46,13 +46,14 @@ SHORT = ("Report no.", "Revision", "Date")  # in the footer
 
 def paper(asked: Mapping[str, Any], measures: Measures) -> str:
     """The paper of a PDF: that of the file, else the one usual where these units are."""
-    wanted = str(_head(asked).get("paper"))
+    wanted = str(head(asked).get("paper"))
     return wanted if wanted in PAPERS.values() else PAPERS[measures]
 
 
-def _head(asked: Mapping[str, Any]) -> Mapping[str, Any]:
-    head = asked.get("report")
-    return head if isinstance(head, Mapping) else {}
+def head(asked: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The table [report] of a file; empty without one."""
+    table = asked.get("report")
+    return table if isinstance(table, Mapping) else {}
 
 
 def _text(words: str) -> str:

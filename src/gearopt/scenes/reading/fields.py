@@ -460,6 +460,9 @@ class ReportHead(Table):
     paper: Annotated[str | None, choice("A4", "Letter")] = Field(
         None, description="Paper of the PDF; by default A4, in inches Letter"
     )
+    appendix: Annotated[bool, truth()] = Field(
+        False, description="Whether paper has what only a specialist checks, as rating factors"
+    )
 
 
 class ProblemFile(Table):

@@ -194,7 +194,13 @@ def processes(result: Result, measures: Measures) -> Section | None:
     trains = {name: design.design["stages"] for name, design in zip(names, designs, strict=True)}
     drawings = train_views.beside(trains, measures) if len(designs) > 1 else ()
     return Section(
-        "Processes and optimum", (), (words, *missing), drawings, tables=(table,), terminal=shown
+        "Processes and optimum",
+        (),
+        (words, *missing),
+        drawings,
+        tables=(table,),
+        appendix=True,
+        terminal=shown,
     )
 
 
@@ -290,7 +296,7 @@ def counts(result: Result, measures: Measures) -> Section | None:
     ]
     shown = (table, "\n".join(words)) if words else (table,)
     title = "Types of the stages" if typed else "Number of stages"
-    return Section(title, words=words, tables=(table,), terminal=shown)
+    return Section(title, words=words, tables=(table,), appendix=True, terminal=shown)
 
 
 def _number(stages: int) -> str:
@@ -390,15 +396,17 @@ def _instead(part: Result, measures: Measures) -> list[str]:
 
 def _in_one_line(result: Result, measures: Measures) -> Section | None:
     """Draw the gears; None where they are laid out."""
-    asks = " A [layout] table in the file places the gears in the smallest box."
+    asks = "A [layout] table in the file places the gears in the smallest box."
     shown, sized = _with_gears(result)
     stages = shown.design.get("stages", ())
     not_laid = any(
         stage.get("idler") or stage.get("driver") == "wheel" or "type" in stage for stage in stages
     )
     hint = "" if sized or not_laid or result.status == "evaluated" else asks
-    drawn = train_views.section(shown, measures, hint)
-    return replace(drawn, heading=f"{sized}, all shafts in one plane") if drawn and sized else drawn
+    if (drawn := train_views.section(shown, measures)) is None:
+        return None
+    named = f"{sized}, all shafts in one plane" if sized else drawn.heading
+    return replace(drawn, heading=named, hint=hint)
 
 
 DRAWINGS = (layout_views.section, layout_solid.section, _in_one_line, planetary.turning)

@@ -66,7 +66,7 @@ def section(result: Result, measures: Measures) -> Section | None:
     words = CAPTION.format("the rack of ISO 53, profile A" if _standard(layout) else OWN_RACKS)
     words = words if whole else f"{words} {ROUNDED}"
     figure = Figure(_traces(layout, measures), seen, words, picture(layout, measures))
-    return Section("In three dimensions", figures=(figure,))
+    return Section("In three dimensions", figures=(figure,), appendix=True)
 
 
 def _standard(layout: LayoutDesign) -> bool:

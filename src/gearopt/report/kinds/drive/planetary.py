@@ -213,7 +213,9 @@ def turning(result: Result, measures: Measures) -> Section | None:
         figures.append(figure(stage, k, seen, gears, measures))
     if not turns and not words:
         return None
-    return Section("Planetary stages", words=words, animations=turns, figures=figures, screen=True)
+    return Section(
+        "Planetary stages", words=words, animations=turns, figures=figures, appendix=True
+    )
 
 
 def loads(result: Result, measures: Measures) -> Section | None:
@@ -228,6 +230,6 @@ def loads(result: Result, measures: Measures) -> Section | None:
         where: list[Any] = [row for k, stage in stages for row in planets(stage, k)]
         carried = side_by_side([planet_load(stage) for _, stage in stages], measures)
         tables.append(Table("planet pins", heads, carried, across=True))
-        tables.append(Table("planets", *records(where, measures)))
+        tables.append(Table("planets", *records(where, measures), appendix=True))
         words.append(PINS)
     return Section("Power flow", words=words, tables=tables, terminal=tables)

@@ -211,7 +211,9 @@ def levels(result: Result, measures: Measures) -> Section | None:
         for rated in rating.each
         if any(name.startswith("load spectrum") for name in rated.unverified)
     ]
-    return Section("Load spectrum", words=said, tables=(Table("levels", heads, rows),))
+    return Section(
+        "Load spectrum", words=said, tables=(Table("levels", heads, rows),), appendix=True
+    )
 
 
 def static(result: Result, measures: Measures) -> Section | None:
@@ -273,7 +275,7 @@ def factors(result: Result, measures: Measures) -> Section | None:
     blocks += words[1:]
     for table in tables:
         blocks += _remarks(table.rows)
-    return Section("Factors", words=words, tables=tables, terminal=blocks)
+    return Section("Factors", words=words, tables=tables, appendix=True, terminal=blocks)
 
 
 def _symbols(rating: DriveRating) -> list[list[RatingFactor]]:

@@ -134,6 +134,7 @@ def contact(result: Result, measures: Measures) -> Section | None:
     tables += [table(pair_contact, measures) for table in TABLES]
     sentences = answers(pair_contact, pair_of(result), _frequency(result), relieved, measures)
     words = list(map(measures.words, sentences))
+    tables = [replace(table, appendix=True) for table in tables]
     shown = [table for table in tables if not table.folded]
     return Section("Contact", words=words, tables=tables, terminal=("\n".join(words), *shown))
 

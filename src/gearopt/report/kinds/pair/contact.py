@@ -72,6 +72,7 @@ def moving(
         words=(f"Line of action and plots: {zone_words(path, relief is not None)}",),
         animations=[in_mesh(pair, MESH, shown, measures, at)],
         figures=figures,
+        appendix=True,
     )
 
 
@@ -146,7 +147,10 @@ def teeth(result: Result, measures: Measures) -> Section | None:
     where = where if single else "contact reaches the tip"
     words = SECTIONS.format(unit=measures.lengths, where=where)
     return Section(
-        "Tooth sections", words=(words,), drawings=tooth_section.sections(pair, measures)
+        "Tooth sections",
+        words=(words,),
+        drawings=tooth_section.sections(pair, measures),
+        appendix=True,
     )
 
 
@@ -158,7 +162,7 @@ def in_space(result: Result, measures: Measures) -> Section | None:
         return Section("In three dimensions", words=(why,))
     stage = drive_design(result.design).stages[0]
     figure = pair_solid.figure(pair, bodies(stage), measures)
-    return Section("In three dimensions", figures=(figure,))
+    return Section("In three dimensions", figures=(figure,), appendix=True)
 
 
 def bodies(stage: StageDesign) -> tuple[Body, Body]:

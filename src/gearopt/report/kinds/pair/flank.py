@@ -1,6 +1,7 @@
 """Contact over the flank: pictures of load and pressure, contact lines, errors, words, tables."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -108,7 +109,8 @@ def section(result: Result, measures: Measures = METRIC) -> Section | None:
     if (flank := flank_of(result)) is None:
         return None
     words = list(map(measures.words, answers(flank, measures)))
-    tables = [load_table(flank, measures, [], CAPTION), *_tables(flank, measures)]
+    loads = replace(load_table(flank, measures, [], CAPTION), appendix=True)
+    tables = [loads, *_tables(flank, measures)]
     return Section(
         "Contact over the flank",
         words=words,
@@ -227,7 +229,7 @@ def _figures(flank: FlankContact, measures: Measures) -> list[Figure]:
     )
     return [
         Figure(*pictured, f"Force per face width over the flank, {at}. {whole}"),
-        Figure(*pressure, f"Hertz's contact stress over the flank, {at}."),
+        Figure(*pressure, f"Hertz's contact stress over the flank, {at}.", appendix=True),
         _errors(flank, measures),
     ]
 
@@ -302,7 +304,7 @@ def _errors(flank: FlankContact, measures: Measures) -> Figure:
     )
     plot["margin"] |= {"t": 44 if several else 24}
     said = "Transmission error over one base pitch: approach along the line of action, by the load."
-    return Figure(traces, plot, said)
+    return Figure(traces, plot, said, appendix=True)
 
 
 def _tables(flank: FlankContact, measures: Measures) -> list[Table]:

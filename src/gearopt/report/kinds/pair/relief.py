@@ -391,7 +391,10 @@ def harmonics(contact: PairContact, relief: PairRelief, measures: Measures) -> S
         rows = [rows[k] for k in sorted({0, duty, len(rows) - 1})]
     figure = _bars(rows, contact, relief, measures)
     return Section(
-        "Harmonics of the transmission error", words=(HARMONICS_WORDS,), figures=(figure,)
+        "Harmonics of the transmission error",
+        words=(HARMONICS_WORDS,),
+        figures=(figure,),
+        appendix=True,
     )
 
 
