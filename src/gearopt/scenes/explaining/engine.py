@@ -28,7 +28,7 @@ from gearopt.scenes.reading.toml_writing import dotted
 logger = logging.getLogger("gearopt.remedies")
 FACTORS_TRIED = (1e6, 1e3, 16.0, 4.0, 2.0, 1.3, 1.1)  # the first that is decided counts
 LAST = 1.5  # times the time to make numbers sharper, for whether less suffices
-SHARE_OF_TIME = 0.4  # at most, of the time that is left, to make numbers sharper in given seconds
+SHARE_OF_TIME = 0.75  # at most, of the time that is left, to make numbers sharper in given seconds
 SECANTS, NO_PROGRESS = 24, 1e-2  # of a logarithm: what falls by less in a step does not fall
 # power by which steps grow; after so many designs for less, questions of ones like them
 FASTER, OFTEN, FEW = 4.0, 4, 5
