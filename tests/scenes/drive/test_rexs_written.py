@@ -179,6 +179,27 @@ def test_planets_that_increase_the_speed_are_described_from_the_sun(load, tmp_pa
     assert again.limits == pytest.approx(result.limits, rel=1e-12)
 
 
+def drive_with(standard, **more):
+    """Two gears of 16MnCr5, rated by a standard, or tables of one's own."""
+    of_both = {"life": "20000 h", "standard": standard}
+    agma = {} if standard == "iso6336" else {"quality": 8, "mounting": "commercial"}
+    iso = {} if standard == "agma" else {"iso6336": {"accuracy_grade": [6, 7]}}
+    pair = {"module": "3 mm", "pinion_teeth": 20, "wheel_teeth": 31, "face_width": "30 mm"}
+    head = {"gearopt": 1, "kind": "drive", "gears": {"steel": "16MnCr5"}, "stage": [pair]}
+    duty = {"power": "5 kW", "input_speed": "960 rpm"}
+    return head | {"duty": duty, "rating": of_both | agma | iso} | more
+
+
+@pytest.mark.parametrize("standard", ("iso6336", "agma"))
+def test_a_steel_is_read_again_where_one_standard_rates_it(standard, tmp_path):
+    """A name says strengths by both, and what the other one reads is refused."""
+    stage = check_again(gearopt.rate(drive_with(standard)), tmp_path)["stage"][0]
+    for member in ("pinion", "wheel"):
+        assert stage[member]["steel"] == "16MnCr5"
+        assert ("grade" in stage[member]) is (standard == "agma")
+        assert ("flank_hardness" in stage[member]) is (standard == "iso6336")
+
+
 def test_a_design_that_was_found_is_written_with_its_places(solved, tmp_path):
     result = solved("elevator_box")
     model = ET.fromstring(result.to_rexs())

@@ -14,6 +14,7 @@ from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result
 from gearopt.physics.gears import MEMBERS, Gear
 from gearopt.physics.shaft_forces import rpm
+from gearopt.scenes.drive.rating.checks import AGMA_KEYS
 from gearopt.scenes.drive.rating.gears import gear_tables, required_hours
 from gearopt.scenes.drive.rating.materials import choices
 from gearopt.scenes.drive.rexs.flow import THROUGH
@@ -36,6 +37,7 @@ from gearopt.scenes.drive.rexs.tables import (
     TREATED,
 )
 from gearopt.scenes.drive.stage_types import held_as
+from gearopt.scenes.drive.tables.iso6336 import ISO_KEYS
 from gearopt.scenes.drive.tables.planetary import gear_of
 from gearopt.scenes.explaining.numbers import content
 from gearopt.scenes.reading.load import load
@@ -47,6 +49,7 @@ OF_STAGE = (  # keys that REXS has no attribute for
     *("minimum_bending_safety", "minimum_contact_safety", "shaft", "given", "given_iso6336"),
     *("mesh_order", "planet_clearance", "carrier_over_face_width", "equally_spaced"),
 )
+IDLE = {"agma": ISO_KEYS, "iso6336": AGMA_KEYS}  # keys of gears that a rating does not read
 SIZES = {"mum": 1000, "kg / dm^3": 10**9}  # of gearopt's own units, mm and t/mm3
 
 
@@ -261,12 +264,14 @@ def _gear(
 ) -> int:
     """Add a gear with its flanks, tool and material."""
     scene, kind = draft.scene, "ring_gear" if member == "ring" else "cylindrical_gear"
+    sort, standard = table.iso_material, scene.rating and scene.rating.standard
+    table = table.model_copy(update=dict.fromkeys(IDLE.get(standard, ())))  # a steel says them
     span = float(gear.thickness_allowance) * math.cos(gear.rack.pressure_angle) * 1000.0 or None
     said = attributes(kind, gear, "result") | attributes(kind, table)
     said |= {BETA: beta, "root_diameter": abs(float(gear.root_diameter))}
     said |= dict.fromkeys(ALLOWANCES, span) | {GRADE: _grade(scene, table, member)}
     number = draft.part(kind, f"{member} of stage {k + 1}", shaft, **said)
-    of_material = _material(draft, number, table)
+    of_material = _material(draft, number, table, sort)
     tool, of_tool = _tool(draft, table, gear)
     _flanks(draft, number, table, gear, tool)
     kept = content(table, False)
@@ -341,18 +346,18 @@ def _flanks(draft: Draft, gear: int, table: Any, of: Gear, tool: int) -> None:
         )
 
 
-def _material(draft: Draft, gear: int, table: Any) -> set[str]:
-    """Add the material of a gear; the keys that it says."""
+def _material(draft: Draft, gear: int, table: Any, sort: str | None) -> set[str]:
+    """Add the material of a gear, of a sort by ISO 6336-5; the keys that it says."""
     values = attributes("material", table)
     if "nitr" in (table.treatment or ""):
         values.pop("surface_hardness_brinell", None)
     done = {SPECS["material"][name].key for name in values}
-    kinds = [kind for kind, names in MATERIALS.items() if table.iso_material in names]
+    kinds = [kind for kind, names in MATERIALS.items() if sort in names]
     values |= dict.fromkeys(TREATED[:1], *kinds) if kinds else {}
     if (density := draft.scene.objective.density) is not None:
         values["density"] = float(density.exact[0] * 10**9)  # of t/mm3
     if values:
-        name = table.steel or table.iso_material or "steel"
+        name = table.steel or sort or "steel"
         material = draft.once("material", name, material_designation=name, **values)
         draft.relate("reference", origin=gear, referenced=material)
     return done
