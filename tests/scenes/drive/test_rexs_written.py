@@ -200,6 +200,19 @@ def test_a_steel_is_read_again_where_one_standard_rates_it(standard, tmp_path):
         assert ("flank_hardness" in stage[member]) is (standard == "iso6336")
 
 
+@pytest.mark.parametrize("widths", ((45, 40, 36), (36, 40, 45), (40, 45, 45), (45, 45, 40)))
+def test_every_gear_beside_an_idler_keeps_its_face_width(widths, tmp_path):
+    """Each mesh is as wide as its narrower gear."""
+    first, idler, last = ({"face_width": f"{b} mm"} for b in widths)
+    pair = {"module": "3 mm", "pinion_teeth": 20, "wheel_teeth": 31}
+    stages = [pair | {"pinion": first, "wheel": idler}]
+    stages.append({"idler": True, "wheel_teeth": 60, "wheel": last})
+    result = gearopt.rate(drive_with("iso6336", stage=stages))
+    again = gearopt.rate(check_again(result, tmp_path))
+    meshes = [min(pair) for pair in zip(widths, widths[1:], strict=False)]
+    assert [stage["face_width_mm"] for stage in again.design["stages"]] == meshes
+
+
 def test_a_design_that_was_found_is_written_with_its_places(solved, tmp_path):
     result = solved("elevator_box")
     model = ET.fromstring(result.to_rexs())

@@ -215,6 +215,10 @@ def _stages(model: Model, path: Sequence[tuple[Step, bool]], remarks: list[str])
             raise wrong(driven, None, rule, "Rate each of its meshes as a pair")
         kept = {key: value for key, value in tables[k].items() if key not in OF_IDLER}
         tables[k] = kept | {"idler": Said(True, str(driven))}
+        tables[k]["wheel"]["face_width"] = step.gears["wheel"].said("face_width")
+        if width := tables[k - 1].pop("face_width", None):  # it would be that of the idler's mesh
+            for member in last.gears:
+                tables[k - 1][member].setdefault("face_width", width)
     return tables
 
 
