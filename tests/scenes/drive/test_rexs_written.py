@@ -10,6 +10,7 @@ import pytest
 from rexs_files import planetary, unit, xml
 
 import gearopt
+from gearopt.physics import steels
 
 PROBLEMS = Path(__file__).parents[3] / "problems"
 NEEDED = {"rating.life": "20000 h", "rating.iso6336.accuracy_grade": 6}
@@ -213,6 +214,23 @@ def test_every_gear_beside_an_idler_keeps_its_face_width(widths, tmp_path):
     assert [stage["face_width_mm"] for stage in again.design["stages"]] == meshes
 
 
+def test_a_stage_by_agma_keeps_its_overload_factor(tmp_path):
+    given = drive_with("agma")
+    given["stage"][0]["overload_factor"] = 1.5
+    tables = check_again(gearopt.rate(given), tmp_path)
+    assert tables["stage"][0]["overload_factor"] == 1.5
+
+
+def test_an_idler_has_the_grades_of_pinion_and_wheel(tmp_path):
+    """Where pinions are of grade 6 and wheels of grade 7, it is rated as each in its mesh."""
+    given = drive_with("iso6336")
+    given["stage"].append({"idler": True, "wheel_teeth": 60})
+    given["rating"]["iso6336"]["tolerances"] = "2013"
+    stages = check_again(gearopt.rate(given), tmp_path)["stage"]
+    grades = [stages[k][m].get("accuracy_grade") for k, m in ((0, "pinion"), (0, "wheel"))]
+    assert grades == [6, None] and stages[1]["wheel"]["accuracy_grade"] == 7
+
+
 def test_a_design_that_was_found_is_written_with_its_places(solved, tmp_path):
     result = solved("elevator_box")
     model = ET.fromstring(result.to_rexs())
@@ -336,13 +354,50 @@ def random_drive(seed):
     return drive
 
 
+def drive_of_steels(seed):
+    """A drive of steels by name, rated by one standard or both; of odd seeds with idlers."""
+    rng, drive = random.Random(seed), random_drive(seed)
+    standard = ("iso6336", "agma", "both")[seed % 3]
+    drive["rating"]["standard"] = standard
+    if standard != "iso6336":
+        drive["rating"] |= {"quality": 8, "mounting": "commercial"}
+    if standard == "agma":
+        del drive["rating"]["iso6336"]
+    known = [s for s in steels.steels() if s.treatment or standard == "iso6336"]
+    if seed % 2:
+        drive["stage"] = [s for s in drive["stage"] if s["type"] == "parallel"] + [None]
+        m, teeth = rng.choice((2, 3)), [rng.randint(17, 30), *sorted(rng.sample(range(31, 90), 3))]
+        *first, third, fourth = ({"face_width": f"{rng.randint(10, 20) * m} mm"} for _ in teeth)
+        pair = {"module": f"{m} mm", "pinion_teeth": teeth[0], "wheel_teeth": teeth[1]}
+        pair |= rng.choice((first[0], {"pinion": first[0], "wheel": first[1]}))
+        last = {"idler": True, "wheel_teeth": teeth[3], "wheel": fourth}
+        between = {"idler": True, "wheel_teeth": teeth[2], "wheel": third}
+        drive["stage"][-1:] = rng.choice(([pair, last], [pair, between, last]))
+    for stage in drive["stage"]:
+        if standard == "agma":
+            stage.pop("given_iso6336", None)
+        members = ["pinion", "wheel"] if "wheel_teeth" in stage else ["sun", "planet", "ring"]
+        members = ["pinion", "ring"] if stage.get("type") == "internal" else members
+        for member in members["idler" in stage :]:
+            own = stage.setdefault(member, {})
+            kept = ("profile_shift", "tip_alteration", "tool_addendum", "tool_tip_radius")
+            kept += ("thickness_allowance", "face_width", "bore", "cutter_teeth")
+            stage[member] = {k: own[k] for k in kept if k in own}
+            stage[member]["steel"] = rng.choice(known).name
+            quality = {"iso_quality": rng.choice(("ML", "MQ"))} if standard != "agma" else {}
+            stage[member] |= rng.choice(({}, quality))
+            stage[member] |= rng.choice(({}, {"grade": 1} if standard != "iso6336" else {}))
+    return drive
+
+
 @pytest.mark.slow
+@pytest.mark.parametrize("drive", (random_drive, drive_of_steels))
 @pytest.mark.parametrize("seed", range(60))
-def test_random_drives_are_the_same_after_a_round_trip(seed, tmp_path):
+def test_random_drives_are_the_same_after_a_round_trip(seed, drive, tmp_path):
     """Seed k draws again, at k + 60, k + 120 ..., what no rating takes."""
     for more in range(100):
         try:
-            result = gearopt.rate(random_drive(seed + 60 * more))
+            result = gearopt.rate(drive(seed + 60 * more))
         except gearopt.GearoptError:
             continue
         check_again(result, tmp_path)

@@ -237,7 +237,8 @@ def _mesh(draft: Draft, k: int, mesh: int, of: int, gears: tuple[int, int], rati
         factor = of_all if asked.overload_factor is None else asked.overload_factor
         said |= {"overload_factor": factor, "mesh_load_factor": stage.mesh_load_factor}
     values = attributes("cylindrical_stage", said, edition=edition)
-    kept = {key: v for key, v in content(asked, False).items() if key in OF_STAGE}
+    names = OF_STAGE if edition else (*OF_STAGE, "overload_factor", "mesh_load_factor")
+    kept = {key: v for key, v in content(asked, False).items() if key in names}
     values |= {f"{CUSTOM}stage": toml_text(kept)} if kept else {}
     number = draft.part("cylindrical_stage", "", of, gear_ratio=float(ratio), **values)
     draft.relate("stage", stage=number, gear_1=gears[0], gear_2=gears[1])
@@ -269,7 +270,7 @@ def _gear(
     span = float(gear.thickness_allowance) * math.cos(gear.rack.pressure_angle) * 1000.0 or None
     said = attributes(kind, gear, "result") | attributes(kind, table)
     said |= {BETA: beta, "root_diameter": abs(float(gear.root_diameter))}
-    said |= dict.fromkeys(ALLOWANCES, span) | {GRADE: _grade(scene, table, member)}
+    said |= dict.fromkeys(ALLOWANCES, span) | {GRADE: _grade(scene, table, member, k)}
     number = draft.part(kind, f"{member} of stage {k + 1}", shaft, **said)
     of_material = _material(draft, number, table, sort)
     tool, of_tool = _tool(draft, table, gear)
@@ -287,15 +288,16 @@ def _gear(
     return number
 
 
-def _grade(scene: Any, table: Any, member: str) -> str | None:
+def _grade(scene: Any, table: Any, member: str, k: int) -> str | None:
     """Tolerance class of a gear where it is of ISO 1328:2013."""
     rating = scene.rating
     if rating is None or rating.standard == "agma" or rating.iso6336.tolerances != "2013":
         return None
     grade, of_all = table.accuracy_grade, rating.iso6336.accuracy_grade
     if grade is None and of_all is not None:
-        if member in ("sun", "planet", "ring") and of_all[0] != of_all[1]:
-            return None  # a planet is pinion and wheel
+        idler = member == "wheel" and any(s.idler for s in scene.stage_tables[k + 1 : k + 2])
+        if (idler or member in ("sun", "planet", "ring")) and of_all[0] != of_all[1]:
+            return None  # a planet is pinion and wheel, and so is an idler
         grade = of_all[member != "pinion"]
     return str(grade) if grade else None
 
