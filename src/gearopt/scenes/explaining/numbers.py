@@ -60,16 +60,16 @@ def in_reverse(value: Any, path: Path) -> bool:
 
 
 def numbers(scene: BaseModel, defaults: bool = False) -> tuple[Number, ...]:
-    """Return every number that the file gives, in the order of its tables; counts are left out.
+    """Return every number that the file gives, in the order of its tables.
 
-    defaults: those too that the file leaves out.
+    defaults: those too that the file leaves out. Counts and tables that decide no answer are none.
     """
     return tuple(n for n in _walk(scene, (), defaults) if n.path not in COUNTS)
 
 
 def _walk(value: Any, path: Path, defaults: bool) -> Iterator[Number]:
     if isinstance(value, BaseModel):
-        for name in type(value).model_fields:
+        for name in type(value).model_fields if getattr(value, "ANSWERS", True) else ():
             if defaults or name in value.model_fields_set:
                 held = getattr(value, name)
                 entry = held[0] if _is_one(type(value), name, held, (*path, name)) else held

@@ -12,7 +12,7 @@ from datetime import date as Date
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError, core_schema
@@ -42,8 +42,12 @@ _SLIP = re.compile(rf"\s*{_NUMBER}\s*((?![eE][+-]?[0-9])[^\s\d.,].*?|1/\S+)?\s*"
 
 
 class Table(BaseModel):
-    """A table of a problem file: frozen, unknown keys refused."""
+    """A table of a problem file: frozen, unknown keys refused.
 
+    ANSWERS: whether its numbers decide an answer, so that remedies and sensitivities move them.
+    """
+
+    ANSWERS: ClassVar[bool] = True
     model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
     _followed: frozenset[str] = frozenset()  # keys that the file whose gears it takes has of it
 

@@ -1,7 +1,7 @@
 """The table [drawing]: by what the data of gear drawings follow."""
 
 import re
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
@@ -30,14 +30,14 @@ Allowances = tuple[Quantity, Quantity]  # lower, upper
 
 
 def _fit() -> Reads:
-    """Read a fit of DIN 3967 as (series, tolerance), or two allowances, none above zero."""
+    """Read a fit of DIN 3967 by its short name, or two allowances, none above zero."""
 
-    def read(value: Any, example: Any) -> tuple[str, int] | Allowances:
+    def read(value: Any, example: Any) -> str | Allowances:
         if isinstance(value, tuple):
             return value  # read before
         text = re.sub(r"^(?:DIN 3967 *)?(\d\d)?([a-z]*)(\d\d)?$", r"\2\1\3", str(value).strip())
         if isinstance(value, str) and (fit := FIT.fullmatch(text)):
-            return fit[1], int(fit[2])
+            return fit[0]
         if texts_of(value) is None:
             raise refuse(NO_FIT)
         low, high = LIMITS.reader(value, LIMITS.example)
@@ -72,11 +72,12 @@ class DrawingTable(Table):
     An empty table asks for them by what is usual.
     """
 
-    allowance: Annotated[tuple[Any, Any], _fit()] = Field(
-        ("cd", 25),
+    ANSWERS: ClassVar[bool] = False
+
+    allowance: Annotated[Any, _fit()] = Field(
+        "cd25",
         description='Allowances of the tooth thickness: a fit of DIN 3967, or two as "-0.05/-0.09 '
         'mm"; a thickness_allowance of a gear is its upper one, with the tolerance of these',
-        json_schema_extra={"default": "cd25"},
     )
     centre_distance: Annotated[Any, _field()] = Field(
         "js7",
@@ -104,8 +105,8 @@ class DrawingTable(Table):
     @property
     def fit(self) -> str:
         """By what the allowances of the tooth thickness are."""
-        first, second = self.allowance
-        return f"DIN 3967 {first}{second}" if isinstance(first, str) else f"{first} and {second}"
+        fit = self.allowance
+        return f"DIN 3967 {fit}" if isinstance(fit, str) else f"{fit[0]} and {fit[1]}"
 
     @property
     def field(self) -> str:
@@ -115,9 +116,9 @@ class DrawingTable(Table):
 
     def thickness(self, gear: Gear) -> tuple[float, float]:
         """Upper and lower allowance [mm] of a gear; its own upper one takes the fit's place."""
-        if isinstance(self.allowance[0], str):
+        if fit := FIT.fullmatch(str(self.allowance)):
             size = abs(float(gear.reference_diameter))
-            upper, lower = thickness_allowances(size, *self.allowance)
+            upper, lower = thickness_allowances(size, fit[1], int(fit[2]))
         else:
             lower, upper = (end.value for end in self.allowance)
         given = float(gear.thickness_allowance)
