@@ -133,7 +133,8 @@ inches: `diametral_pitch = 10`, `"1.5 in"`, `"4 hp"`, `"50 ksi"`.
   any standard: the reasons come first, in numbers (`misfits` in `--json`), and the exit code is 3.
 - **safe, with warnings**: what a designer may accept is said first: undercut, thin tips, a contact
   ratio below 1.2, a backlash of more than four times the recommended least one, a face that is
-  loaded in part (K_Hbeta above 2), a ratio that is not the one asked for.
+  loaded in part (K_Hbeta above 2), main resonance, a speed beyond the curve of K_v by AGMA, a ratio
+  that is not the one asked for.
 - **S_F**, **S_H**: the stress limit over the actual stress. S_H is of stress; of load it is its
   square, {square} here for the pinion.
 - **limit**: the allowable stress number of the steel, s_at or s_ac, times Y_N or Z_N (and C_H for a

@@ -186,6 +186,28 @@ def test_faces_that_are_loaded_in_part_are_one_sentence_for_all_stages():
     )
 
 
+def test_main_resonance_and_speeds_beyond_the_curve_of_K_v_are_said_first():
+    """Q_v 8: B = 4^(2/3)/4, A = 50 + 56 (1 - B), the curve ends at (A + 5)^2 ft/min; d1 60 mm."""
+    tables = pair({"standard": "both", "iso6336": {"accuracy_grade": 7}})
+    b = 4.0 ** (2.0 / 3.0) / 4.0
+    most = (50.0 + 56.0 * (1.0 - b) + 5.0) ** 2 * 0.3048 / 60.0  # m/s
+    seen = set()
+    for speed in (1450, 6000, 9500, 15000, 20000):
+        result = gearopt.rate(tables, {"duty.input_speed": f"{speed} rpm", "duty.power": "30 kW"})
+        found = result.design["rating"]
+        (mesh,), rows = found["meshes"], found["beside"]["factors"]
+        line = mesh["tangential_force_N"] * 1.25 / 30.0
+        begins = 0.5 + 0.35 * min(1.0, line / 100.0) ** 0.5  # of ISO 6336-1
+        near = begins < of(rows, symbol="N")["pinion"] <= 1.15
+        fast = mesh["pitch_line_velocity_m_per_s"] > most
+        flaws = found.get("flaws", ())
+        assert any("runs in its main resonance, N = " in said for said in flaws) is near
+        assert any(f"ends at {most:.1f} m/s: K_v" in said for said in flaws) is fast
+        assert not (result.feasible and flaws) or "safe, with warnings" in str(result)
+        seen |= {(near, fast)}
+    assert {(False, False), (True, True), (False, True)} <= seen
+
+
 def test_helix_and_pressure_angle_are_those_of_the_stage():
     """m_F = b sin beta/(pi m_n); tan alpha_t = tan alpha_n/cos beta; else those of [gears]."""
     tables = two_stages(

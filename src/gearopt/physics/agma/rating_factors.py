@@ -17,6 +17,7 @@ from gearopt.physics.rating import Factor, Operation
 
 SURFACE_HARD_KINDS = ("carburised", "nitrided")  # whose pinions count as 48 HRC and more
 EDITIONS = ("D04", "B88")
+BEYOND = "beyond the curve"  # how the remark begins on a K_v of a speed that has none
 PAIRED = ("K_B", "K_s", "J", "s_at", "s_ac", "Y_N", "Z_N", "C_H")  # one value for each gear
 SHARING = "K_gamma"  # mesh load factor of planets, which AGMA has not: given alone, beside K_o
 SHARED = ("K_o", "K_v", "K_m", "K_R", "K_T", "C_f", "C_p", "I")
@@ -184,7 +185,7 @@ def computed(case: Case, symbol: str) -> Factor:
 
 def _dynamic(case: Case) -> Factor:
     most = float(factors.highest_speed(case.practice.quality))
-    remark = "" if case.speed <= most else f"beyond the curve, which ends at {1e-3 * most:.1f} m/s"
+    remark = "" if case.speed <= most else f"{BEYOND}, which ends at {1e-3 * most:.1f} m/s"
     return Factor("K_v", float(value(case, "K_v")), "2001-D04, 8", remark=remark)
 
 

@@ -11,9 +11,11 @@ from gearopt.formulations.drive.rating import DriveRating, MeshRating, ShaftRati
 from gearopt.formulations.drive.train import STEEL_DENSITY
 from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import typed, untyped
+from gearopt.physics.agma.rating_factors import BEYOND
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.geometry.flaws import Flaw
+from gearopt.physics.iso6336.load_factors import RANGES
 from gearopt.physics.loads import torque
 from gearopt.physics.shaft_forces import hands
 from gearopt.scenes.drive.drawing import with_drawing
@@ -327,7 +329,8 @@ def rating(
     placed = [of_stage(scene.rating, own).shaft for own in scene.stage_tables]
     shafts = [None if table is None else table.made for table in placed]
     odd = unusual(pairs, tables, drivers(scene), shafts, mesh_names(scene))
-    return replace(first, flaws=(*_partial_contact(first), *dict.fromkeys(odd)))
+    flaws = (*_partial_contact(first), *_unsure_dynamics(first), *dict.fromkeys(odd))
+    return replace(first, flaws=flaws)
 
 
 def _partial_contact(rated: DriveRating) -> Iterator[str]:
@@ -350,6 +353,25 @@ def _partial_contact(rated: DriveRating) -> Iterator[str]:
             f"K_Hbeta = {FULL_CONTACT:g} the line load falls to zero at one end. A helix "
             "modification, stiffer shafts or a narrower face would spread the load better."
         )
+
+
+def _unsure_dynamics(rated: DriveRating) -> Iterator[str]:
+    """Yield a sentence on each mesh in main resonance, or faster than its standard's K_v goes."""
+    rows = [(one, row) for one in rated.each for row in one.factors if row.symbol == "K_v"]
+    for one, row in rows:
+        mesh, factor = one.mesh_words(row.stage), f"K_v {row.pinion:.4g} by {one.by}"
+        _, _, end = row.remark.partition(", ")
+        if row.remark.startswith(RANGES[1]):
+            yield (
+                f"The mesh of {mesh} runs in its main resonance, {end.partition(':')[0]}: it "
+                f"vibrates most there, and {factor} is an estimate that no published value "
+                "confirms. Another speed or other numbers of teeth leave it."
+            )
+        elif row.remark.startswith(BEYOND):
+            yield (
+                f"The pitch line velocity of {mesh} is {BEYOND} of K_v, {end}: {factor} is "
+                "extrapolated. Give K_v, or a better quality."
+            )
 
 
 def _by(
