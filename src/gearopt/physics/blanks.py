@@ -14,6 +14,7 @@ from gearopt.physics.gears import Gear, is_internal
 
 HUB = 1.6  # usual diameter of a hub over its bore
 HUB_TOLERANCE = 1e-9  # of the diameter: what is this close to the hub counts as touching it
+THIN = 0.5  # backup ratio up to which no standard has a rim factor
 THICK = 10.0  # backup ratio of a solid gear; from 1.2 on no standard has a rim factor
 
 
@@ -37,6 +38,7 @@ class Blank:
 
     The rim fits where it leaves a web: d_f - 2 s_R > h d_i. Else the gear is a solid disc, bored
     where the hub is inside its root circle, without a bore, as on a pinion shaft, where it is not.
+    kept: the bore is the gear's own and is there whatever the hub, where the wall is not `THIN`.
     """
 
     rim_over_module: float | None = None
@@ -44,6 +46,7 @@ class Blank:
     web_over_width: float = 1.0
     bore: float = 0.0
     hub_over_bore: float = HUB
+    kept: bool = False
 
     @property
     def has_rim(self) -> bool:
@@ -87,7 +90,9 @@ class Blank:
         if not self.bore:
             return no
         d, root = gear.reference_diameter, gear.root_diameter
-        hub = self.hub + HUB_TOLERANCE * d
+        hub = (self.bore if self.kept else self.hub) + HUB_TOLERANCE * d
+        if self.kept:
+            root = root - THIN * (gear.tip_diameter - root)
         return choose(hub < root, choose(hub < d, yes, no), no)
 
     def where(self, gear: Gear, rim: Any, bored: Any, solid: Any) -> Any:
@@ -124,6 +129,8 @@ class Blank:
     @property
     def _hub_part(self) -> float:
         """Part of the area of its hub that a bored gear keeps: 1 - 1/h^2."""
+        if self.kept:
+            return 0.0
         return 1.0 - self.hub_over_bore**-2 if self.bore else 1.0
 
     @property

@@ -5,6 +5,7 @@ import math
 
 import pytest
 from campaigns import few
+from rated_files import pair
 
 import gearopt
 from gearopt.errors import SceneError
@@ -189,3 +190,32 @@ def test_a_rating_tells_what_does_not_fit():
         (made,) = found.design["stages"]
         assert made.get("pinion_bore_mm") == (30.0 if bore == "30 mm" else None)
         assert made["wheel_hub_diameter_mm"] == pytest.approx(1.6 * float(bore[:2]))
+
+
+@pytest.mark.parametrize(("bore", "used"), [(30.0, False), (40.0, True), (45.0, True)])
+def test_a_bore_of_a_given_gear_is_rated_though_its_usual_hub_has_no_room(bore, used):
+    """Wall (52.5 - bore)/2 below z 20, m 3: Y_B = K_B = 1.6 ln(2.242 h_t/s_R), h_t = 6.75 mm."""
+    wall, depth, width = 0.5 * (52.5 - bore), 6.75, 30.0
+    asked = {"standard": "both", "iso6336": {"accuracy_grade": 7}}
+    found = gearopt.rate(pair(asked, pinion={"bore": f"{bore:g} mm"})).design
+    rows = [*found["rating"]["factors"], *found["rating"]["beside"]["factors"]]
+    rims = [row["pinion"] for row in rows if row["symbol"] in ("K_B", "Y_B")]
+    factor = max(1.0, 1.6 * math.log(2.242 * depth / wall)) if wall < 1.2 * depth else 1.0
+    assert rims == pytest.approx([factor] * 2, rel=1e-12) and (factor > 1.0) is used
+    said = " ".join(found["rating"]["flaws"])
+    assert ("usual hub of the pinion of stage 1" in said) is used
+    (stage,) = found["stages"]
+    assert stage["pinion_bore_mm"] == bore
+    mass = 7.85e-6 * math.pi / 4.0 * width * (60.0**2 - bore**2)
+    assert stage["pinion_mass_kg"] == pytest.approx(mass, rel=1e-12)
+
+
+@pytest.mark.parametrize(("bore", "fits"), [("45.7 mm", True), ("45.8 mm", False)])
+def test_a_wall_of_half_the_whole_depth_is_too_thin(bore, fits):
+    """52.5 - 6.75 mm = 45.75 mm; a hub that is given says that it is a pinion shaft."""
+    found = gearopt.rate(pair(pinion={"bore": bore}))
+    rating = found.design["rating"]
+    assert found.feasible is fits
+    assert ("stay below 45.75 mm" in " ".join(rating.get("misfits", ()))) is not fits
+    shaft = gearopt.rate(pair(pinion={"bore": bore, "hub_over_bore": 1.6})).design["rating"]
+    assert "solid, without its bore" in " ".join(shaft["flaws"])

@@ -6,8 +6,8 @@ from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
-from gearopt.physics.blanks import HUB, Blank
-from gearopt.physics.gears import MEMBERS, GearPair
+from gearopt.physics.blanks import HUB, THIN, Blank
+from gearopt.physics.gears import MEMBERS, Gear, GearPair
 from gearopt.physics.geometry.flaws import ROUNDING, Flaw
 from gearopt.scenes.reading.fields import Table, number, quantity, refuse
 from gearopt.units import Quantity
@@ -24,6 +24,7 @@ Place = tuple[Any, ...]
 class BlankKeys(Table):
     """What is left of a gear below its teeth; by default it is a solid disc."""
 
+    _kept: bool = False  # the bore is that of a gear that is given, not of those that have room
     rim_thickness: Length = Field(
         None,
         description="Thickness of the rim below the root circle, for K_B and Y_B; where it does "
@@ -43,7 +44,8 @@ class BlankKeys(Table):
     bore: Annotated[Quantity | None, quantity("length", "40 mm", zero=True)] = Field(
         None,
         description="Diameter of the bore; a gear whose hub would not lie inside its root circle "
-        "is solid, as on a pinion shaft. By default 0",
+        "is solid, as on a pinion shaft, but for a given gear with a bore of its own and no "
+        "hub_over_bore. By default 0",
     )
     hub_over_bore: Annotated[Fraction | None, number(1.6, 1, 10)] = Field(
         None,
@@ -88,6 +90,7 @@ def blank(table: BlankKeys, face_width: float | None) -> Blank:
         thick,
         table.bore.value if table.bore else 0.0,
         HUB if hub is None else float(hub),
+        table._kept and hub is None,
     )
 
 
@@ -128,8 +131,8 @@ def body_flaws(
 ) -> Iterator[Flaw]:
     """Yield flaws of the bodies of a design, of floats: rims and bores that have no room.
 
-    bored: of which gears (pinion and wheel of every stage) the file has the bore. One that is as
-    wide as the root circle is a misfit there; a bore of all gears leaves small ones solid. named:
+    bored: of which gears (pinion and wheel of every stage) the file has the bore. One that leaves
+    too little wall is a misfit there; a bore of all gears leaves small ones solid. named:
     the `MeshName` of each, by default those of stages.
     """
     for k, (both, pair) in enumerate(zip(blanks, pairs, strict=True)):
@@ -138,17 +141,39 @@ def body_flaws(
             name, body = f"{member} of stage {stage}", shape.body(gear)
             root = float(gear.root_diameter)
             if shape.bore and not body.bore:
+                yield _no_bore(shape, gear, name, bool(bored and bored[k][i]))
+            elif body.bore and shape.kept and not body.rim_thickness and shape.hub >= root:
+                wall = 0.5 * (root - body.bore)
                 text = (
-                    f"The bore of the {name}, {shape.bore:.4g} mm, leaves nothing inside the root "
-                    f"circle of {root:.4g} mm; it is rated as solid."
-                    if shape.bore >= root
-                    else f"The {name} is solid, without its bore: a hub of {shape.hub:.4g} mm does "
-                    f"not lie inside the root circle of {root:.4g} mm."
+                    f"The usual hub of the {name}, {shape.hub:.4g} mm, has no room inside the root "
+                    f"circle of {root:.4g} mm: the wall of {wall:.3g} mm around its bore, "
+                    f"{float(shape.backup(gear)):.3g} of the whole depth, is rated as its rim."
                 )
-                wide = (shape.bore - root) / gear.normal_module if bored and bored[k][i] else -1.0
-                equal = 2.0 * ROUNDING  # a bore as wide as the root circle does not fit either
-                yield Flaw("no bore", text, misfit=max(0.0, wide + equal))
+                yield Flaw("no hub", text)
             elif shape.has_rim and not body.rim_thickness:
                 inside = f"{float(shape.inside(gear)):.4g} mm inside its rim"
                 hub = f" for a hub of {shape.hub:.4g} mm" if shape.bore else ""
                 yield Flaw("no web", f"The {name} has no web: {inside} leave no room{hub}.")
+
+
+def _no_bore(shape: Blank, gear: Gear, name: str, own: bool) -> Flaw:
+    """The flaw of a gear whose bore is left out; own: it is the gear's, which then does not fit."""
+    root = largest = float(gear.root_diameter)
+    text = f"The bore of the {name}, {shape.bore:.4g} mm, leaves"
+    if shape.bore >= root:
+        text += f" nothing inside the root circle of {root:.4g} mm; it is rated as solid."
+    elif shape.kept:
+        largest -= THIN * (float(gear.tip_diameter) - root)
+        text += (
+            f" a wall of {0.5 * (root - shape.bore):.3g} mm inside the root circle of {root:.4g} "
+            f"mm; it is rated as solid. Up to {THIN:g} of the whole depth no standard has a rim "
+            f"factor: the bore has to stay below {largest:.4g} mm."
+        )
+    else:
+        text = (
+            f"The {name} is solid, without its bore: a hub of {shape.hub:.4g} mm does not lie "
+            f"inside the root circle of {root:.4g} mm."
+        )
+    wide = (shape.bore - largest) / gear.normal_module if own else -1.0
+    equal = 2.0 * ROUNDING  # a bore as wide as the root circle does not fit either
+    return Flaw("no bore", text, misfit=max(0.0, wide + equal))

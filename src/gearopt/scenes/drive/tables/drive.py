@@ -244,6 +244,16 @@ class StageTable(Loaded, PlanetaryKeys):
             raise refuse(rule, at=("diametral_pitch",), action="remove")
         return self
 
+    @model_validator(mode="after")
+    def _bores(self) -> "StageTable":
+        """Bores of gears that are given are kept, where no hub is given."""
+        sizes = (self.size, self.pinion_teeth, self.wheel_teeth)
+        if all(ends and ends[0] == ends[1] for ends in sizes):
+            for member in ("pinion", "wheel", "sun", "planet"):
+                table = getattr(self, member)
+                table._kept = table.bore is not None
+        return self
+
     @property
     def size(self) -> Lengths | None:
         """Return the ends of the range of the normal module, by whichever key."""
