@@ -1,8 +1,10 @@
 """The terminal: sections of a result, explanations and comparisons, in words and tables."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 
 from rich.console import Console, JustifyMethod
+from rich.containers import Renderables
 from rich.markup import escape
 from rich.table import Table as Grid
 from rich.text import Text
@@ -29,19 +31,23 @@ from gearopt.report.words import (
 )
 
 LABEL = 20  # columns of the terminal that the first column of a table of words has at least
+CELL = 18  # columns of the terminal from which on texts side by side break, where room is short
 COLUMN_GAP = 2  # columns of the terminal between those of a table
 INDENT = "  "
 
 
-def grid(table: Table, width: int) -> Grid:
+def grid(table: Table, width: int) -> Grid | Renderables:
     """A section's table for the terminal; without heads a list of names and values.
 
     width: columns of the terminal. Of a table of words in which the first column has too little
-    room, its text stands above that of the second.
+    room, its text stands above that of the second. What a table lists side by side, without room
+    for the names of its rows, stands in groups, one below the other.
     """
     heads, rows = table.on_terminal
     if table.words and _narrow(table, width):
         return _stacked(table, width)
+    if table.across and any(heads) and _narrow(table, width):
+        return Renderables(_groups(table, width))
     if any(heads):
         shown = Grid(*map(escape, heads), box=None, header_style="bold", pad_edge=False)
         for k, column in enumerate(shown.columns):
@@ -58,6 +64,26 @@ def _narrow(table: Table, width: int) -> bool:
     """Whether a table's first column would have less than LABEL columns, and needs more."""
     first, *others = (max(map(len, column)) for column in _columns(table))
     return width - sum(COLUMN_GAP + other for other in others) < min(first, LABEL)
+
+
+def _groups(table: Table, width: int) -> Iterator[Grid | str]:
+    """Yield parts of what a table lists side by side, whose texts break from CELL columns on."""
+    heads, rows = table.on_terminal
+    label, *others = _columns(table)
+    wide = max(min(CELL, max(map(len, column))) for column in others)
+    most = max(1, (width - min(LABEL, max(map(len, label)))) // (COLUMN_GAP + wide))
+    size = math.ceil(len(others) / math.ceil(len(others) / most))
+    for start in range(1, len(heads), size):
+        if start > 1:
+            yield ""
+        kept = slice(start, start + size)
+        shown = Grid(box=None, header_style="bold", pad_edge=False)
+        shown.add_column(escape(heads[0]))
+        for head in heads[kept]:
+            shown.add_column(escape(head), justify="right", max_width=CELL, overflow="fold")
+        for row in rows:
+            shown.add_row(*map(_text, (row[0], *row[kept])))
+        yield shown
 
 
 def _columns(table: Table) -> list[list[str]]:
