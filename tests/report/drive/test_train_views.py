@@ -8,6 +8,7 @@ import layout_cases as cases
 import numpy as np
 import pytest
 from page_reader import Reader, drawings, extents, marks, numbers
+from rated_files import pair
 
 import gearopt
 from gearopt.formulations.drive.design import describe
@@ -16,7 +17,7 @@ from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.optimise.typed import untyped
 from gearopt.physics.blanks import Blank
-from gearopt.report.drawing.train_views import BESIDE, PITCH, WIDE, beside
+from gearopt.report.drawing.train_views import BESIDE, PITCH, WIDE, beside, views
 from gearopt.report.measures import METRIC
 from gearopt.report.pages.result import page
 
@@ -251,3 +252,20 @@ def test_the_output_of_two_stages_of_one_distance_is_drawn_in_line_with_the_inpu
     assert "the output in line with the input" in shown
     assert "the design is not of this drawing but of all shafts in one line, over" in shown
     assert "total length in one line [mm]" in shown
+
+
+def test_a_face_width_that_is_not_dimensioned_stands_with_its_gear():
+    """Widths of 45, 40 (an idler) and 36 mm: in the side view, and of each gear under Teeth."""
+    own = {"pinion": {"face_width": "45 mm"}, "wheel": {"face_width": "40 mm"}}
+    tables = pair(pinion_teeth=20, wheel_teeth=31, **own)
+    del tables["stage"][0]["face_width"]
+    tables["stage"].append({"idler": True, "wheel_teeth": 60, "wheel": {"face_width": "36 mm"}})
+    found = gearopt.rate(tables).design
+    texts = list(ET.fromstring(views(found["stages"], METRIC)[-1].svg).itertext())
+    assert [t for t in map(str.strip, texts) if t.startswith(("z ", "b1"))] == [
+        "b1 40.0",
+        "z 60, b 36.0",
+        "z 31",
+        "z 20, b 45.0",
+    ]
+    assert [row["face_width_mm"] for row in found["rating"]["teeth"]] == [45.0, 40.0, 40.0, 36.0]

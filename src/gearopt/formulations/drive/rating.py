@@ -145,6 +145,7 @@ class ToothGeometry:
     teeth: Annotated[float, Shown("teeth z")]
     profile_shift: Annotated[float, Shown("profile shift x")]
     generating_shift: Annotated[float, Shown("generating shift x_E")]
+    face_width_mm: Annotated[float | None, Shown("face width b")] = None
     reference_diameter_mm: Annotated[float, Shown("reference diameter d")]
     working_pitch_diameter_mm: Annotated[float, Shown("working pitch diameter d_w")]
     base_diameter_mm: Annotated[float, Shown("base diameter d_b")]

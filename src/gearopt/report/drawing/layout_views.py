@@ -309,7 +309,8 @@ def side_view(
         ]
         sheet.balloon(str(shaft.shaft), spots)
     for gear in sorted(layout.gears, key=lambda g: -g.tip_diameter_mm):
-        side_name(sheet, gear, heights[gear.shaft], gear.name)
+        text = gear.name + own_width(layout, gear, measures)
+        side_name(sheet, gear, heights[gear.shaft], text)
     if over is not None:
         over(sheet)
     if axis == "z":
@@ -371,21 +372,32 @@ def face_widths(
     sheet: Sheet, train: Turning, tops: Mapping[int, float], measures: Measures
 ) -> None:
     """Draw face widths above all that is drawn; tops: where their lines begin, by stage [mm]."""
+    for stage, wheel in _dimensioned(train).items():
+        (x0, wall), (x1, _) = (sheet.at(x, tops[stage]) for x in (wheel.from_mm, wheel.to_mm))
+        for x in (x0, x1):
+            sheet.tick((x, wall), (x, LEVEL - 4.0))
+        sheet.arrows((x0, LEVEL), (x1, LEVEL))
+        text = f"b{stage} {measures.length(_width(wheel), 1)}"
+        levels = [Place((x0 + x1) / 2, LEVEL - up, 0.0, up / 10) for up in (9.0, 24.0)]
+        sheet.label(text, levels, "size")
+
+
+def _dimensioned(train: Turning) -> dict[int, GearDesign]:
+    """The gear of each stage whose face width is dimensioned; none of those behind an idler."""
     wheels = {g.stage: g for g in train.gears if g.member in ("wheel", "ring")}
-    for slab in train.slabs:
-        for stage in slab:
-            if stage not in wheels:
-                continue
-            (x0, wall), (x1, _) = (
-                sheet.at(x, tops[stage]) for x in (wheels[stage].from_mm, wheels[stage].to_mm)
-            )
-            for x in (x0, x1):
-                sheet.tick((x, wall), (x, LEVEL - 4.0))
-            sheet.arrows((x0, LEVEL), (x1, LEVEL))
-            wide = wheels[stage].to_mm - wheels[stage].from_mm
-            text = f"b{stage} {measures.length(wide, 1)}"
-            levels = [Place((x0 + x1) / 2, LEVEL - up, 0.0, up / 10) for up in (9.0, 24.0)]
-            sheet.label(text, levels, "size")
+    return {k: wheels[k] for slab in train.slabs for k in slab if k in wheels}
+
+
+def _width(gear: GearDesign) -> float:
+    return gear.to_mm - gear.from_mm
+
+
+def own_width(train: Turning, gear: GearDesign, measures: Measures) -> str:
+    """The face width of a gear behind its name, where it is not the one that is dimensioned."""
+    wheel = _dimensioned(train).get(gear.stage)
+    if wheel is not None and math.isclose(_width(wheel), _width(gear)):
+        return ""
+    return f", b {measures.length(_width(gear), 1)}"
 
 
 def side_name(sheet: Sheet, gear: GearDesign, height: float, text: str) -> None:

@@ -18,6 +18,7 @@ from gearopt.report.drawing.layout_views import (
     gear_circles,
     gear_names,
     gears_on,
+    own_width,
     side_name,
 )
 from gearopt.report.drawing.sheet import Drawing, Place, Sheet, Window, series
@@ -358,7 +359,8 @@ def _side(train: Bodies, scale: float, measures: Measures) -> Drawing:
         _numbered(sheet, train, shaft)
     for gear in sorted(seen, key=lambda g: -g.tip_diameter_mm):
         called = "" if gear.member in MEMBERS and not train.plates else f"{gear.name.split()[0]} "
-        side_name(sheet, gear, places[gear.shaft], f"{called}z {number(gear.teeth)}")
+        text = f"{called}z {number(gear.teeth)}{own_width(train, gear, measures)}"
+        side_name(sheet, gear, places[gear.shaft], text)
     return sheet.drawing("side view", "Side view, across the shafts.")
 
 

@@ -178,7 +178,10 @@ def teeth(result: Result, measures: Measures) -> Section | None:
     """The geometry of the teeth of every gear; None without a rating."""
     if (rating := rating_of(result)) is None:
         return None
-    rows, lacking = _lacking([_above_zero(gear) for gear in rating.teeth], measures)
+    widths = {(gear.stage, gear.face_width_mm) for gear in rating.teeth}
+    alike = {} if len(widths) > len(rating.meshes) else {"face_width_mm": None}  # b of the stage
+    shown = [replace(_above_zero(gear), **alike) for gear in rating.teeth]
+    rows, lacking = _lacking(shown, measures)
     table = Table("teeth", ["", *names(rating)], rows, across=True)
     words = [
         "Terms are those of ISO 21771, shifts are in normal modules. The generating shift is that "

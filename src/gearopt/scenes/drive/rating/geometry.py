@@ -34,6 +34,7 @@ def tooth_geometry(stage: int, pair: GearPair, member: int, pinion_hand: str) ->
         teeth=round(gear.teeth) if whole else gear.teeth,
         profile_shift=float(gear.profile_shift),
         generating_shift=float(gear.generating_shift),
+        face_width_mm=float(gear.width),
         reference_diameter_mm=float(gear.reference_diameter),
         working_pitch_diameter_mm=float(pair.working_diameters[member]),
         base_diameter_mm=float(gear.base_diameter),
