@@ -128,7 +128,7 @@ def _of(status, limits, value=1.0, **more):
         (_of("limit", {"a": 1.0}), "in the best design found the limit on a is active"),
         (
             _of("optimal", {"a": 0.5, "b": 0.9996}),
-            "no limit is active; the closest is b, at 99.96 %",
+            "no limit is active; the closest by utilisation is b, at 99.96 %",
         ),
         (
             _of("optimal", {"a": 1.0, "b": 0.9968}),

@@ -83,7 +83,9 @@ def test_a_limit_that_an_unproven_design_does_not_reach_is_not_active(solved):
     low = {n: min(u, 0.97) if n.startswith("k_factor") else u for n, u in proven.limits.items()}
     stopped = replace(proven, status="limit", limits=low)
     assert lead(proven).startswith("the limits on K-factor of stages 1 and 2 determine")
-    assert lead(stopped).startswith("in the best design found no limit is active; the closest is")
+    assert lead(stopped).startswith(
+        "in the best design found no limit is active; the closest by utilisation is"
+    )
 
 
 def test_dropping_any_one_is_said_where_it_was_tried():

@@ -196,7 +196,7 @@ def _nearest(limits: Mapping[str, float], alone: bool, staged: bool) -> list[str
     if alone and used < 0.0:
         return ["no limit is active"]
     if alone:
-        return [f"no limit is active; the closest is {limit}, at {_whole(used)} %"]
+        return [f"no limit is active; the closest by utilisation is {limit}, at {_whole(used)} %"]
     return [f"{limit} is at {_whole(used)} % of its limit"] if used >= NAMED_FROM else []
 
 

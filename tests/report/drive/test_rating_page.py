@@ -4,12 +4,14 @@ import csv
 import io
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import rating_cases as cases
 from campaigns import few
 from page_reader import Reader, on_screen, without_input
+from rated_files import two_stages
 from read_numbers import repeated
 from rich.console import Console
 
@@ -367,3 +369,20 @@ def test_a_page_names_the_command_that_makes_it(here, tmp_path):
     file.write_text(cases.SHIGLEY, encoding="utf-8")
     assert here("rate", file, "--html", html).returncode == 0
     assert f"gearopt rate {file} --html {html}" in text(html.read_text(encoding="utf-8"))
+
+
+def test_what_governs_is_said_by_what_it_is_measured():
+    """Least power and least safety factor may be of two stages: then the power is named."""
+    rated = gearopt.rate(two_stages(rating={"minimum_contact_safety": 1}))
+    rating = rated.design["rating"]
+    weak = min(rating["meshes"], key=lambda mesh: mesh["power_capacity_kW"])
+    mode, _, member = weak["governs"].partition(" of the ")
+    least = min(row[f"{kind}_safety"] for row in rating["gears"] for kind in ("bending", "contact"))
+    gears = [
+        row if row["stage"] == weak["stage"] else row | {f"{mode}_safety": 0.999 * least}
+        for row in rating["gears"]
+    ]
+    other = replace(rated, design=rated.design | {"rating": rating | {"gears": gears}})
+    said = f"{mode} of the {member} of stage {weak['stage']} governs"
+    assert f"{said}:" in " ".join(told(rated).split())
+    assert f"{said} the power capacity:" in " ".join(told(other).split())

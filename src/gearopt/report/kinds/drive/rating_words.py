@@ -116,8 +116,16 @@ def _by_both(rating: DriveRating) -> str:
 
 
 def _governs(rating: DriveRating) -> str:
-    """Governing gear and mode by every standard; equal ones once."""
-    words = [f"{_governing(rated)[0]} governs" for rated in rating.each]
+    """Governing gear and mode by every standard; equal ones once.
+
+    What transmits least power need not be what has the least safety factor over the one asked for.
+    """
+    words = []
+    for rated in rating.each:
+        name, _, reached, asked = _governing(rated)
+        least = min(reached / asked for _, reached, asked in _all(rated))
+        of_power = " the power capacity" * (reached / asked > least * (1.0 + ROUNDING))
+        words.append(f"{name} governs{of_power}")
     if len(set(words)) == 1:
         return f"{words[0]}{' both' * (len(words) > 1)}"
     return of_standards(rating, words)
