@@ -5,7 +5,7 @@ from rated_files import two_stages
 from rich.console import Console
 
 import gearopt
-from gearopt.report.kinds.drive import drawing_tables
+from gearopt.report.kinds.drive import drawing_tables, rating_tables
 from gearopt.report.measures import METRIC
 from gearopt.report.section import Cell
 from gearopt.report.terminal import grid
@@ -41,3 +41,15 @@ def test_groups_are_as_few_as_there_is_room_for(table):
         with console.capture() as seen:
             console.print(grid(table, width))
         assert seen.get().count("normal module m_n") == groups
+
+
+def test_backlash_of_a_rating_is_nominal_beside_that_of_its_drawing():
+    """Gears without allowances at their reference distance have none."""
+    for drawn, ending in (({"drawing": {}}, ", nominal"), ({}, "")):
+        section = rating_tables.forces(gearopt.rate(two_stages() | drawn), METRIC)
+        rows = {row[0]: row[1:] for row in section.tables[0].rows}
+        for name in ("circumferential backlash j_wt", "normal backlash j_bn"):
+            assert [cell.value for cell in rows[f"{name}{ending} [mm]"]] == pytest.approx([0, 0])
+        assert any("without the allowances of the drawing" in w for w in section.words) is bool(
+            ending
+        )

@@ -1,5 +1,6 @@
 """A rating as sections of tables: forces and contact, teeth; names and rows of its tables."""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import isclose
@@ -103,6 +104,8 @@ def forces(result: Result, measures: Measures) -> Section | None:
         return None
     heads = ["", *(rating.titled(mesh.stage) for mesh in rating.meshes)]
     shown, lacking = _lacking(rating.meshes, measures)
+    if drawn := bool(result.design.get("drawing")):  # whose backlash has a table of its own
+        shown = [[re.sub(r" (j_\w+)", r" \1, nominal", label), *cells] for label, *cells in shown]
     rows = [*_least_rows(rating, measures), *shown]
     meshes = Table("meshes", heads, rows, across=True)
     heads = ["", *(f"shaft {shaft.shaft}" for shaft in rating.shafts)]
@@ -123,6 +126,8 @@ def forces(result: Result, measures: Measures) -> Section | None:
             "Efficiencies are those of tooth friction alone, without bearings, seals and oil "
             "churning" + ("." if rating.efficiency_error_percent is None else f"; {FRICTION}.")
         )
+    if drawn:
+        words.append("Nominal backlash is without the allowances of the drawing data.")
     words += lacking
     stages = result.design["stages"]
     sentences = "\n".join(
