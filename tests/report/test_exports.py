@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import gearopt
+from gearopt.errors import GearoptError
 from gearopt.formulations.drive.design import drive_design
 from gearopt.optimise.result import Result
 from gearopt.physics.gears import ISO_53_A, Cutter, Gear, reference_diameter
@@ -236,3 +237,10 @@ def test_the_command_writes_a_file_and_says_what_it_cannot(here, tmp_path, box):
     ):
         wrong = here(*command)
         assert (wrong.returncode, said in wrong.stderr) == (2, True), wrong.stderr
+
+
+def test_a_result_without_such_tables_says_what_asks_for_them():
+    cases = ("reference_pair", "this pair has no relief"), ("shigley_14_4", "this drive has no CSV")
+    for name, said in cases:
+        with pytest.raises(GearoptError, match=said):
+            gearopt.export(PROBLEMS / f"{name}.toml", "csv")

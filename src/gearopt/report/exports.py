@@ -34,10 +34,10 @@ def solids(result: Result) -> bytes:
     return step(parts(result))
 
 
-def listed(*pages: MakeSection, ending: str = "") -> Export:
+def listed(*pages: MakeSection, lacking: str, ending: str = "") -> Export:
     """The way to the CSV of tables of a page; several each below its name, an empty line between.
 
-    ending: of the names of those that are wanted.
+    lacking: what a result without such tables is told. ending: of the names of those wanted.
     """
 
     def export(result: Result) -> bytes:
@@ -50,7 +50,7 @@ def listed(*pages: MakeSection, ending: str = "") -> Export:
             if isinstance(table, Table) and table.name.endswith(ending)
         }
         if not tables:
-            raise ValueError("there is no such table in this result: docs/drawing.md says of what")
+            raise ValueError(lacking)
         texts = [table.csv() for table in tables.values()]
         if len(texts) > 1:
             texts = [f"{name}\r\n{text}" for name, text in zip(tables, texts, strict=True)]

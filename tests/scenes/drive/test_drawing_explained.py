@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 import gearopt
+from gearopt.errors import SceneError
 from gearopt.scenes.explaining.numbers import allowed, numbers
 
 PROBLEMS = Path(__file__).parents[3] / "problems"
@@ -31,3 +32,10 @@ def test_remedies_and_sensitivities_are_those_without_it(file):
     assert drawn.remedies == bare.remedies
     assert bare.remedies or bare.influences
     assert drawn.influences == bare.influences
+
+
+@pytest.mark.parametrize("allowance", ["0.05/0.09 mm", ["0.09 mm", "0.05 mm"]])
+def test_allowances_without_their_signs_are_told_with_them(allowance):
+    with pytest.raises(SceneError) as wrong:
+        gearopt.load(PROBLEMS / "elevator.toml", {"drawing": {"allowance": allowance}})
+    assert '"-0.05/-0.09 mm"' in str(wrong.value)

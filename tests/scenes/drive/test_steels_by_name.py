@@ -2,6 +2,7 @@
 
 import pytest
 from campaigns import few
+from rated_files import pair
 
 import gearopt
 from gearopt.errors import SceneError
@@ -141,3 +142,24 @@ def test_materials_to_choose_from_may_be_steels_by_name(tmp_path):
     result = gearopt.solve(path)
     assert result.status == "optimal"
     assert result.design["stages"][0]["pinion_material"] == "16MnCr5"
+
+
+@pytest.mark.parametrize("standard", ["both", "agma", "iso6336"])
+def test_an_iron_without_a_class_is_told_at_once_to_give_strengths(standard):
+    """EN-GJS-800-10 is of neither standard: what is told to write is accepted."""
+    asked = {"standard": standard} | (
+        {"iso6336": {"accuracy_grade": 7}} if standard != "agma" else {}
+    )
+    tables = pair(asked)
+    tables["gears"] = {"steel": "EN-GJS-800-10"}
+    if standard == "iso6336":
+        del tables["rating"]["quality"]
+    with pytest.raises(SceneError, match="Give sigma_Hlim and sigma_Flim") as wrong:
+        gearopt.load(tables)
+    assert "Write standard" not in str(wrong.value)
+    given = {"iso_material": "GGG", "sigma_Hlim": "700 MPa", "sigma_Flim": "300 MPa"}
+    iso = pair({"standard": "iso6336", "iso6336": {"accuracy_grade": 7}})
+    del iso["rating"]["quality"]
+    assert gearopt.rate(iso | {"gears": given | {"yield_strength": "500 MPa"}}).limits
+    with pytest.raises(SceneError, match="Y_deltarelT of GGG follows from it"):
+        gearopt.load(iso | {"gears": given})

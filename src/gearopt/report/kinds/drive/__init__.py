@@ -64,6 +64,7 @@ STAGED = {  # tables of a layout: keys that the table of stages or the box shows
     "gaps": ("axes_mm",),
     "obstacles": ("from_mm", "to_mm"),
 }
+NO_TABLE = "this drive has no CSV to export; tables [drawing] and [layout] ask for one each"
 OF_STAGE = {"ratio": "ratio u", "centre_distance_mm": "a", "face_width_mm": "b"}
 OF_DRIVE = ("ratio", "ratio_error_percent", "gear_volume_mm3")
 
@@ -464,7 +465,7 @@ PAGES = Pages(
     exports={
         "dxf": drawn(layout_views.section, train_views.section, also=gears),
         "step": solids,
-        "csv": listed(places, drawing_tables.section),
+        "csv": listed(places, drawing_tables.section, lacking=NO_TABLE),
         "rexs": rexs,
     },
     pages_of_given=PAGES_OF_GIVEN,

@@ -184,7 +184,9 @@ def teeth(result: Result, measures: Measures) -> Section | None:
     if (rating := rating_of(result)) is None:
         return None
     widths = {(gear.stage, gear.face_width_mm) for gear in rating.teeth}
-    alike = {} if len(widths) > len(rating.meshes) else {"face_width_mm": None}  # b of the stage
+    alike: dict[str, Any] = (
+        {} if len(widths) > len(rating.meshes) else {"face_width_mm": None}
+    )  # b of the stage
     shown = [replace(_above_zero(gear), **alike) for gear in rating.teeth]
     rows, lacking = _lacking(shown, measures)
     table = Table("teeth", ["", *names(rating)], rows, across=True)

@@ -410,7 +410,7 @@ PAGES = Pages(
     binding_limit=binding_limit,
     warns=warns,
     drawn=False,
-    exports={"csv": listed(motion, speeds)},
+    exports={"csv": listed(motion, speeds, lacking="there is no motion to export")},
     pages_of_given=Pages(
         sections=(summary, asked, *SECTIONS, assumptions),
         terminal=(rest, stability, motion, speeds, summary),

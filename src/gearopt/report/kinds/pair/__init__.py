@@ -201,6 +201,7 @@ def numbers(result: Result, measures: Measures) -> Section | None:
     return replace(section, terminal=shown)
 
 
+NO_RELIEF = "this pair has no relief to export; a table [relief] asks for one"
 CONTACT = (relief, mesh, harmonics, contact, flank.section)
 DRAWINGS = (teeth, in_space, train_views.section)
 RATINGS = tuple(make for make in drive.RATINGS if make is not mesh_view.section)  # mesh is better
@@ -237,7 +238,7 @@ PAGES = Pages(
     exports={
         "dxf": drawn(teeth, also=gears),
         "step": solids,
-        "csv": listed(relief, ending="profile"),
+        "csv": listed(relief, lacking=NO_RELIEF, ending="profile"),
     },
     pages_of_given=PAGES_OF_GIVEN,
 )

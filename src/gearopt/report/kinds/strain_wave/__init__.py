@@ -358,6 +358,9 @@ PAGES = replace(
     PAGES_OF_GIVEN,
     sections=(*OPENING, *OWN_SECTIONS, *REQUEST, search, *CLOSING),
     terminal=(numbers, loaded_teeth, cutter, limits, *AFTER_DESIGN),
-    exports={"dxf": drawn(cutter, also=flanks), "csv": listed(numbers, cutter, ending="flank")},
+    exports={
+        "dxf": drawn(cutter, also=flanks),
+        "csv": listed(numbers, cutter, lacking="there are no flanks to export", ending="flank"),
+    },
     pages_of_given=PAGES_OF_GIVEN,
 )

@@ -34,6 +34,19 @@ AGMA = (  # keys of [rating] that only AGMA has
     *("adjusted", "pinion_offset", "size_factor", "bending_load", "service", "given"),
 )
 AGMA_KEYS = ("grade", "surface_hardness", "quality", "s_ac", "s_at")  # of gears
+OWN_STRENGTH = (
+    "Give sigma_Hlim and sigma_Flim, and an iso_material with its yield_strength, without steel"
+)
+NOTCH_LAWS = (
+    "Eh",
+    "IF",
+    "NT",
+    "NV",
+    "NV nitrocarburised",
+    "GTS",
+    "GG",
+    "GGG ferritic",
+)  # of no yield point
 CORELESS = "changes nothing: only Eh of quality MQ has strengths by core"
 YIELDLESS = "changes nothing: of surface-hardened steel no strength depends on it"
 SMOOTHLESS = "changes nothing beside flank_rz, which the rating by ISO 6336 takes"
@@ -367,8 +380,7 @@ def _check_material(gear: GearTable, place: Place, given: dict[str, Any]) -> Non
     """Refuse a gear whose material has no strength in ISO 6336-5."""
     if gear.steel and gear.iso_material is None and gear.treatment != SOFT_ROOTS:
         rule = "has no class of ISO 6336-5"
-        tell = "Give sigma_Hlim and sigma_Flim, and an iso_material for its life, without steel"
-        raise refuse(rule, tell, (*place, "steel"), "tell")
+        raise refuse(rule, OWN_STRENGTH, (*place, "steel"), "tell")
     if gear.treatment is None and gear.iso_material is None:
         rule = "is missing: a rating needs the material of every gear (or give treatment)"
         raise refuse(rule, "Eh", (*place, "iso_material"), "sample")
@@ -391,6 +403,10 @@ def _check_material(gear: GearTable, place: Place, given: dict[str, Any]) -> Non
             missing = key != "iso_quality"
             rule = f"is missing: {reason}" if missing else str(reason)
             raise refuse(rule, write, (*place, key), "sample") from None
+    unknown = not material.strength_for_notches and material.family not in NOTCH_LAWS
+    if unknown and "Y_deltarelT" not in given:
+        rule = f"is missing: Y_deltarelT of {material.name} follows from it (or give hardness)"
+        raise refuse(rule, "500 MPa", (*place, "yield_strength"), "sample")
 
 
 def _check_own(gear: GearTable, place: Place, given: dict[str, Any], names: Sequence[str]) -> None:
@@ -409,6 +425,9 @@ def _check_steel(gear: GearTable, place: Place, given: dict[str, Any]) -> None:
         iron, tell = chosen(gear), 'Write standard = "iso6336" in [rating], or another steel'
         if iron and iron.us in IRONS:
             tell = f'Write treatment = "{iron.us}" instead of steel, or standard = "iso6336"'
+        elif gear.iso_material is None:
+            rule = "has neither a strength by AGMA 2001 nor a class of ISO 6336-5"
+            tell = f'{OWN_STRENGTH}, and standard = "iso6336" in [rating]; or another steel'
         raise refuse(rule, tell, (*place, "steel"), "tell")
     if gear.treatment is None:
         rule = "is missing: a rating needs the steel of every gear (or give steel)"

@@ -43,6 +43,9 @@ def _fit() -> Reads:
         low, high = LIMITS.reader(value, LIMITS.example)
         if high.number > 0:
             rule = "has an allowance above zero: teeth are thinned, not thickened"
+            signs = low.number > 0 and low.unit == high.unit  # as columns of drawings have them
+            if signs:
+                raise refuse(rule, f"-{str(low).split()[0]}/-{high}")
             raise refuse(rule, [f"-{high}", "0 mm"] if low.number >= 0 else [str(low), "0 mm"])
         return low, high
 
