@@ -208,7 +208,10 @@ def remedies(result: Result, measures: Measures) -> Section | None:
     rows, sure = remedy_words(ways_out)
     if not rows and not ways_out["conflict"] and ways_out["message"] in result.message:
         return None  # the first sentence says it
-    tables = [Table("remedies", REMEDY_HEADS, rows, words=True, left=3)] if rows else []
+    bounded = any(way["bound"] is not None for way in ways_out["remedies"])
+    hidden = () if bounded else REMEDY_HEADS[-1:]
+    remedy = Table("remedies", REMEDY_HEADS, rows, words=True, left=3, csv_only=hidden)
+    tables = [remedy] if rows else []
     if not rows and ways_out["message"] and ways_out["message"] in result.message:
         sure += " No remedy was found by relaxing limits."  # the message stands above
     sure = measures.words(sure)

@@ -11,7 +11,15 @@ from gearopt.optimise.pareto.objectives import Objective
 from gearopt.report.design_tables import OF_TEETH
 from gearopt.report.measures import METRIC, Measures, read_in, rounded
 from gearopt.report.section import Cell, Table, cell
-from gearopt.report.words import MODULE, SECONDS, goal_words, number, sentence, teeth_of
+from gearopt.report.words import (
+    MODULE,
+    SECONDS,
+    goal_words,
+    impossible_for,
+    number,
+    sentence,
+    teeth_of,
+)
 
 VERDICTS = {
     "complete": ("complete Pareto front, proven", "green"),
@@ -46,7 +54,7 @@ def verdict(front: Front) -> tuple[str, str]:
     words, colour = VERDICTS[front.status]
     scope = front.proof.get("scope")
     if scope and front.status == "infeasible":
-        return f"impossible with {scope}, proven", colour
+        return impossible_for(scope), colour
     return f"{words} ({scope})" if scope else words, colour
 
 

@@ -262,7 +262,7 @@ def certainty(result: Result) -> tuple[str, str]:
     if result.status == "stationary" and result.bound is not None:
         words = "locally optimal"  # its gap is told beside
     if of_gears_first(result):
-        return f"impossible with {result.proof['scope']}, proven", colour
+        return impossible_for(result.proof["scope"]), colour
     scope = "" if result.value is None else str(result.proof.get("scope", ""))
     these = bool(scope) and any(part.name == "gears" for part in result.parts)
     if result.status == "optimal" and these:
@@ -275,6 +275,11 @@ def certainty(result: Result) -> tuple[str, str]:
     if "achieved" in result.report:  # something is come near to
         words = words.replace("optimal", result.report.get("best", "nearest"))
     return f"{words} ({scope})" if scope else words, colour
+
+
+def impossible_for(scope: str) -> str:
+    """Headline where some gears, and they alone, are proven impossible."""
+    return f"impossible for these gears ({scope.removeprefix('gears ')}), proven"
 
 
 def of_gears_first(result: Result) -> bool:

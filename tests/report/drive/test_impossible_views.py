@@ -10,7 +10,8 @@ from page_reader import drawings, extents, marks, numbers
 import gearopt
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Terms, Var
-from gearopt.report.measures import rounded
+from gearopt.report.explained import remedies
+from gearopt.report.measures import METRIC, rounded
 from gearopt.report.pages.result import page
 
 NAMES = ("k_factor", "unit_load", "wheel_diameter", "pinion_teeth_low", "module_low")
@@ -186,3 +187,14 @@ def test_hatched_boxes_are_named_where_there_are_any(hatched):
     shown = page(cases.elevator(status="infeasible", design={}, limits={}, report=report), "")
     assert "what was asked. One scale" in shown
     assert ("hatched boxes are keep-outs" in shown) == hatched
+
+
+@pytest.mark.parametrize(("bounds", "shown_"), [((None, None), False), ((None, 1.2), True)])
+def test_remedies_without_a_proven_minimum_have_no_column_of_it(bounds, shown_):
+    ways = [remedy("limits.wheel_diameter", 1.3, bound) for bound in bounds]
+    report = {"ways_out": {"conflict": ["wheel_diameter[1]"], "remedies": ways, "message": ""}}
+    result = gearopt.Result("drive", "infeasible", "ipopt", {}, report=report, scene="drive")
+    (table,) = remedies(result, METRIC).tables
+    for heads, _ in (table.on_page, table.on_terminal):
+        assert ("proven minimum" in heads) is shown_
+    assert "proven minimum" in table.values[0]

@@ -42,7 +42,7 @@ def test_what_has_no_front_is_said(changes, names, words):
 def test_gears_that_cannot_be_laid_out_have_no_front():
     front = gearopt.pareto(FILE, {"layout.largest_height": "200 mm"}, objectives="width,height")
     assert front.status == "infeasible" and not front.points and front.message
-    words = "impossible with gears sized first for least gear volume, proven"
+    words = "impossible for these gears (sized first for least gear volume), proven"
     assert verdict(front)[0] == words
     assert all(one.endswith(".") and not one.endswith("..") for one in decided(front))
 

@@ -61,13 +61,13 @@ def test_gears_chosen_first_that_do_not_fit_exclude_no_others(sized):
     assert [c["key"] for c in remedy["changes"]] == ["layout.together"]
     assert remedy["verified"] == {"with": "feasible"}
     for shown in told(found):
-        assert "mpossible with gears sized first for least gear volume, proven" in shown
+        assert "mpossible for these gears (sized first for least gear volume), proven" in shown
         assert "teeth z1" in shown  # of the gears that are meant
-        assert "These gears, sized first for least gear volume, do not fit" in shown
+        assert "These gears, sized first for least gear volume, do not fit. " in shown
         assert "layout.together = true" in shown
         assert "for the gears sized first: others may need less" in shown
         assert "mpossible, proven" not in shown and "no design meets all limits" not in shown
-    assert "impossible with gears sized first for least gear volume, proven" in repr(found)
+    assert "impossible for these gears (sized first for least gear volume), proven" in repr(found)
 
 
 @pytest.mark.slow

@@ -152,7 +152,7 @@ def _impossible(
         assert scene.layout is not None
         if not scene.layout.together:
             least = str(sized.objective["name"]).replace("_", " ")
-            message = f"These gears, sized first for least {least}, do not fit: {message}"
+            message = f"These gears, sized first for least {least}, do not fit. {message}"
     return replace(result, design={}, message=message, report={"notes": notes})
 
 
@@ -333,7 +333,7 @@ def _why(result: Result, apart: Result) -> dict[str, Any]:
     if result.status != "infeasible":
         return {}
     message = apart.message or "none was found for these in time"
-    words = f"No gears within the limits can be arranged. Of the gears sized first: {message}"
+    words = f"No gears within the limits can be arranged. Those sized first do not fit. {message}"
     return {"message": words, "report": {"notes": [words]}}
 
 

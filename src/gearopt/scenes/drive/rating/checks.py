@@ -37,16 +37,7 @@ AGMA_KEYS = ("grade", "surface_hardness", "quality", "s_ac", "s_at")  # of gears
 OWN_STRENGTH = (
     "Give sigma_Hlim and sigma_Flim, and an iso_material with its yield_strength, without steel"
 )
-NOTCH_LAWS = (
-    "Eh",
-    "IF",
-    "NT",
-    "NV",
-    "NV nitrocarburised",
-    "GTS",
-    "GG",
-    "GGG ferritic",
-)  # of no yield point
+NO_YIELD = {"Eh", "IF", "NT", "NV", "NV nitrocarburised", "GTS", "GG", "GGG ferritic"}
 CORELESS = "changes nothing: only Eh of quality MQ has strengths by core"
 YIELDLESS = "changes nothing: of surface-hardened steel no strength depends on it"
 SMOOTHLESS = "changes nothing beside flank_rz, which the rating by ISO 6336 takes"
@@ -403,7 +394,7 @@ def _check_material(gear: GearTable, place: Place, given: dict[str, Any]) -> Non
             missing = key != "iso_quality"
             rule = f"is missing: {reason}" if missing else str(reason)
             raise refuse(rule, write, (*place, key), "sample") from None
-    unknown = not material.strength_for_notches and material.family not in NOTCH_LAWS
+    unknown = not material.strength_for_notches and material.family not in NO_YIELD
     if unknown and "Y_deltarelT" not in given:
         rule = f"is missing: Y_deltarelT of {material.name} follows from it (or give hardness)"
         raise refuse(rule, "500 MPa", (*place, "yield_strength"), "sample")
