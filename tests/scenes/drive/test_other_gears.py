@@ -128,7 +128,9 @@ def test_a_smaller_change_than_that_of_the_gears_chosen_first_does(sized):
     """What is said of other gears is true: with less than the remedy there is a design."""
     low = gearopt.solve(scene_of(text(250.0, "together = true\n"))[0])
     assert low.status == "infeasible" and "scope" not in low.proof
-    assert low.message.startswith("No gears within the limits can be arranged. Of the gears")
+    assert low.message.startswith(
+        "No gears within the limits can be arranged. Those sized first do"
+    )
     (change,) = low.report["ways_out"]["remedies"][0]["changes"]
     assert float(change["write"].strip('"').split()[0]) > LESS
     high = gearopt.solve(scene_of(text(LESS, "together = true\n"))[0], gap=0.1)
