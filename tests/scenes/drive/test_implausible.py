@@ -87,7 +87,7 @@ CASES = {  # name -> (replacements, what is told)
     ),
     "few teeth": ({"pinion_teeth = 20": "pinion_teeth = 10"}, "undercut"),
     "bore through the root": ({"#pinion": 'bore = "75 mm"'}, "75 mm, leaves nothing"),
-    "bore near the root": ({"#pinion": 'bore = "66 mm"'}, "a hub of 105.6 mm"),
+    "bore near the root": ({"#pinion": 'bore = "66 mm"'}, "66 mm, leaves a wall of"),
     "shaft of the wheel": ({"#wheel": 'bore = "290 mm"'}, "290 mm, leaves nothing"),
     "coarse": ({"accuracy_grade = 6": "accuracy_grade = 11"}, "of the face width of stage 1"),
     "too hard": ({GEARS: 'steel = "42CrMo4"\nhardness = "390 HB"'}, "42CrMo4 is"),

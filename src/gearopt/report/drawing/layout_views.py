@@ -309,8 +309,7 @@ def side_view(
         ]
         sheet.balloon(str(shaft.shaft), spots)
     for gear in sorted(layout.gears, key=lambda g: -g.tip_diameter_mm):
-        text = gear.name + own_width(layout, gear, measures)
-        side_name(sheet, gear, heights[gear.shaft], text)
+        side_name(sheet, gear, heights[gear.shaft], gear.name + own_width(layout, gear, measures))
     if over is not None:
         over(sheet)
     if axis == "z":
@@ -377,7 +376,7 @@ def face_widths(
         for x in (x0, x1):
             sheet.tick((x, wall), (x, LEVEL - 4.0))
         sheet.arrows((x0, LEVEL), (x1, LEVEL))
-        text = f"b{stage} {measures.length(_width(wheel), 1)}"
+        text = f"b{stage} {measures.length(wheel.to_mm - wheel.from_mm, 1)}"
         levels = [Place((x0 + x1) / 2, LEVEL - up, 0.0, up / 10) for up in (9.0, 24.0)]
         sheet.label(text, levels, "size")
 
@@ -388,16 +387,11 @@ def _dimensioned(train: Turning) -> dict[int, GearDesign]:
     return {k: wheels[k] for slab in train.slabs for k in slab if k in wheels}
 
 
-def _width(gear: GearDesign) -> float:
-    return gear.to_mm - gear.from_mm
-
-
 def own_width(train: Turning, gear: GearDesign, measures: Measures) -> str:
     """The face width of a gear behind its name, where it is not the one that is dimensioned."""
-    wheel = _dimensioned(train).get(gear.stage)
-    if wheel is not None and math.isclose(_width(wheel), _width(gear)):
-        return ""
-    return f", b {measures.length(_width(gear), 1)}"
+    wheel, wide = _dimensioned(train).get(gear.stage), gear.to_mm - gear.from_mm
+    alike = wheel is not None and math.isclose(wheel.to_mm - wheel.from_mm, wide)
+    return "" if alike else f", b {measures.length(wide, 1)}"
 
 
 def side_name(sheet: Sheet, gear: GearDesign, height: float, text: str) -> None:

@@ -183,11 +183,9 @@ def teeth(result: Result, measures: Measures) -> Section | None:
     """The geometry of the teeth of every gear; None without a rating."""
     if (rating := rating_of(result)) is None:
         return None
-    widths = {(gear.stage, gear.face_width_mm) for gear in rating.teeth}
-    alike: dict[str, Any] = (
-        {} if len(widths) > len(rating.meshes) else {"face_width_mm": None}
-    )  # b of the stage
-    shown = [replace(_above_zero(gear), **alike) for gear in rating.teeth]
+    shown = [_above_zero(gear) for gear in rating.teeth]
+    if len({(gear.stage, gear.face_width_mm) for gear in shown}) == len(rating.meshes):
+        shown = [replace(gear, face_width_mm=None) for gear in shown]  # b of the stage
     rows, lacking = _lacking(shown, measures)
     table = Table("teeth", ["", *names(rating)], rows, across=True)
     words = [

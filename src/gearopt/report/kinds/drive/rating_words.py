@@ -116,10 +116,7 @@ def _by_both(rating: DriveRating) -> str:
 
 
 def _governs(rating: DriveRating) -> str:
-    """Governing gear and mode by every standard; equal ones once.
-
-    What transmits least power need not be what has the least safety factor over the one asked for.
-    """
+    """Governing gear and mode by every standard; of power, where safety factors have another."""
     words = []
     for rated in rating.each:
         name, _, reached, asked = _governing(rated)

@@ -159,21 +159,20 @@ def body_flaws(
 def _no_bore(shape: Blank, gear: Gear, name: str, own: bool) -> Flaw:
     """The flaw of a gear whose bore is left out; own: it is the gear's, which then does not fit."""
     root = largest = float(gear.root_diameter)
+    circle = f"inside the root circle of {root:.4g} mm"
     text = f"The bore of the {name}, {shape.bore:.4g} mm, leaves"
     if shape.bore >= root:
-        text += f" nothing inside the root circle of {root:.4g} mm; it is rated as solid."
+        text += f" nothing {circle}; it is rated as solid."
     elif shape.kept:
         largest -= THIN * (float(gear.tip_diameter) - root)
         text += (
-            f" a wall of {0.5 * (root - shape.bore):.3g} mm inside the root circle of {root:.4g} "
-            f"mm; it is rated as solid. Up to {THIN:g} of the whole depth no standard has a rim "
-            f"factor: the bore has to stay below {largest:.4g} mm."
+            f" a wall of {0.5 * (root - shape.bore):.3g} mm {circle}; it is rated as solid. Up to "
+            f"{THIN:g} of the whole depth no standard has a rim factor: the bore has to stay below "
+            f"{largest:.4g} mm."
         )
     else:
-        text = (
-            f"The {name} is solid, without its bore: a hub of {shape.hub:.4g} mm does not lie "
-            f"inside the root circle of {root:.4g} mm."
-        )
+        text = f"The {name} is solid, without its bore: a hub of {shape.hub:.4g} mm does not lie "
+        text += f"{circle}."
     wide = (shape.bore - largest) / gear.normal_module if own else -1.0
     equal = 2.0 * ROUNDING  # a bore as wide as the root circle does not fit either
     return Flaw("no bore", text, misfit=max(0.0, wide + equal))
