@@ -19,6 +19,7 @@ def test_the_files_are_those_of_the_problems():
     assert shown == [text.split("[x-expected]")[0].rstrip() + "\n" for text in texts]
 
 
+@pytest.mark.slow
 def test_what_is_refused_reads_as_shown(tmp_path, here):
     text = (ROOT / "problems" / "unit_15_kw.toml").read_text(encoding="utf-8")
     (tmp_path / "drive.toml").write_text(text)

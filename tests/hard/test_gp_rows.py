@@ -59,6 +59,7 @@ def test_cvxpy_and_ipopt_agree(case):
     assert found.bound <= min(found.value, cone.value * (1.0 + below))
 
 
+@pytest.mark.slow
 def test_the_table_of_the_page_is_recomputed():
     for name, memory in zip(CASES, MEMORY, strict=True):
         drive, rows = name.split(", ", 1)

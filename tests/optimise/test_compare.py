@@ -104,6 +104,7 @@ def test_gaps_are_to_the_best_bound_we_proved():
     assert rows(found)["coarse"].equal_evaluations.summary.tight == 0.0
 
 
+@pytest.mark.slow
 def test_without_a_bound_gaps_are_to_the_best_known():
     found = gearopt.compare(catalogue(), methods=("annealing", "nsga2"), seeds=2, **SMALL)
     (group,) = found.groups

@@ -237,6 +237,7 @@ def test_random_integer_programs_against_enumeration():
     assert min(found.values()) >= 3
 
 
+@pytest.mark.slow
 def test_finite_sets_in_a_cone_program():
     problem, best = catalogue()
     for budget, value in best.items():

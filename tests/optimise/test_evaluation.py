@@ -240,6 +240,7 @@ def test_norm_and_sum_are_proven_on_their_tapes():
     assert result.status == "optimal" and result.value == pytest.approx(0.75, rel=1e-8)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", few([None, "annealing"], 1))
 def test_a_simulation_that_waits_for_a_number_is_ended_on_symbols(method, monkeypatch):
     """It steps to t = 1 by a width that is NaN on symbols: no comparison with NaN ends a loop."""

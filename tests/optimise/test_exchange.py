@@ -97,6 +97,7 @@ def test_units_follow_from_those_of_the_variables():
     assert solve(beam(bent)).feasible  # with comparisons, as before
 
 
+@pytest.mark.slow
 def test_problems_go_to_pymoo_and_back():
     from pymoo.problems import get_problem
 

@@ -117,6 +117,7 @@ def test_a_number_of_several_limits_or_of_the_objective_is_data_unless_it_divide
     assert {name for name, role in roles.items() if role == ("limit",)} == {"both"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("key", "numbers"),
     [
@@ -138,6 +139,7 @@ def test_comparisons_are_answered_by_the_number_they_compare_with(key, numbers):
     assert float(changes[key].write) == pytest.approx(100.0, 1e-5)
 
 
+@pytest.mark.slow
 def test_whole_numbers_without_an_exact_method_are_explained():
     """7 z_1 <= z_2 of 10 to 40 teeth: the pinion needs 5 teeth."""
 

@@ -36,6 +36,7 @@ def bar(most=10.0, power=1.0, role="limit"):
     return Problem("bar", variables, parameters, evaluate)
 
 
+@pytest.mark.slow
 def test_of_two_conflicts_no_limit_resolves_both():
     """x <= 1 against x >= 2, and the same of y: dropping one limit leaves the other pair."""
 
@@ -49,6 +50,7 @@ def test_of_two_conflicts_no_limit_resolves_both():
     assert found.any_resolves is False
 
 
+@pytest.mark.slow
 def test_a_bound_and_a_safety_factor_that_enters_squared():
     """Either d <= 13.82, or the safety factor whose square is 1.5/1.91."""
     found = explain(bar(power=2.0))
@@ -121,6 +123,7 @@ def test_signed_rows_and_bounds_below_zero():
     assert {r.verified["with_less"] for r in explained.remedies} == {"infeasible"}
 
 
+@pytest.mark.slow
 def test_repeats_share_one_factor():
     def evaluate(x, p):
         return Terms({"d": x.d})
@@ -143,6 +146,7 @@ def test_repeats_share_one_factor():
     assert even["d upper"] == pytest.approx(2.0, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_rows_of_a_repeat_are_one_limit():
     """Load 8 needs d = 8: neither the other rows nor the lower bound of d have a part in that."""
 
@@ -160,6 +164,7 @@ def test_rows_of_a_repeat_are_one_limit():
     }
 
 
+@pytest.mark.slow
 def test_a_parameter_without_effect_at_the_guess_is_still_the_limit():
     """(x/S)^2 <= 1 at x = 0: no slope there, but S is what must be written."""
 

@@ -275,6 +275,7 @@ def test_beaten_points_are_set_apart():
     assert sifted([])[0] == ()
 
 
+@pytest.mark.slow
 def test_steps_without_a_result_leave_their_gap_open_and_named(monkeypatch):
     """Of a + b = 1 no step between b = 0.4 and 0.8 has a result."""
     own = epsilon._attempt

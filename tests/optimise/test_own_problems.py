@@ -262,6 +262,7 @@ def test_methods_take_whole_numbers_and_finite_sets_or_name_the_first():
             solve(problem, method)
 
 
+@pytest.mark.slow
 def test_workers_share_points_and_change_no_answer():
     """A text that raises beyond a = 2.9 and knows no symbols; one or two processes run it."""
     pids = set()

@@ -151,6 +151,7 @@ def test_a_limit_on_an_objective_cuts_the_front_and_an_impossible_one_is_proven(
     assert nothing.impossible[0].proven and nothing.hypervolume is None and nothing.corner == ()
 
 
+@pytest.mark.slow
 def test_three_objectives_by_a_grid_lie_on_the_known_surface():
     """Slices of it spend few points twice."""
 

@@ -86,6 +86,7 @@ def reducer():
     return scope["reducer"]
 
 
+@pytest.mark.slow
 def test_those_of_a_local_minimum_are_differences_of_solved_problems():
     problem = reducer()
     found = solve(problem)

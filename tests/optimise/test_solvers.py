@@ -126,6 +126,7 @@ def test_ipopt_builds_no_program_when_time_is_over(monkeypatch, start, known):
         ipopt.run(box(), Budget(seconds=100.0), 0, None, start=np.array(start))
 
 
+@pytest.mark.slow
 def test_gp_and_ipopt_share_nothing_and_agree_to_1e_9():
     """Three stages of an exact ratio, and two within 1 %."""
     three = replace(drive(110, ("0.6", "0.6", "0.75"), F(0), modules=()), torque=21702.9)

@@ -304,6 +304,7 @@ def test_packing_plans_are_to_scale(case):
     assert len(solids) == len(design["cylinders"])
 
 
+@pytest.mark.slow
 def test_progress_tells_best_bound_and_gap():
     plot = figures(page(cases.three_stage(), "x"))[1]
     best, bound = plot["data"]

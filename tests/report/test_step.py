@@ -86,6 +86,7 @@ def in_place(part, steps, thinner=0.0, turned=0.0):
     return np.stack((c * y - s * z, s * y + c * z), axis=1) + it.centre
 
 
+@pytest.mark.slow
 def test_teeth_of_sun_planets_and_ring_are_in_spaces():
     """Of a print, without backlash: no corner of thinner planets is in the sun or in the ring.
 

@@ -334,6 +334,7 @@ def test_a_field_that_holds_a_module_has_its_unit_like_every_other_length():
     assert width == "face width b [in]"
 
 
+@pytest.mark.slow
 def test_without_a_table_of_sensitivities_its_columns_are_not_explained(elevator):
     """Numbers that change nothing stand in a sentence alone."""
     idle = {"key": "limits.x", "value": "1", "sensitivity": 0.0, "resolved": [0.0, 0.0]}

@@ -25,7 +25,7 @@ def tables(path=ELEVATOR):
     return tomllib.loads(path.read_text(encoding="utf-8"))
 
 
-@pytest.mark.parametrize("path", few(FILES, FILES[::4]), ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", few(FILES, FILES[::6]), ids=lambda p: p.stem)
 def test_the_tables_of_a_file_are_its_scene_and_every_number_has_its_key(path, monkeypatch):
     """Floats of Python are the decimals of the file, so scenes with exact fractions are equal.
 

@@ -196,6 +196,7 @@ def test_further_trains_are_no_bound_of_the_best():
     assert bounds[-1] <= result.value * ROUNDED
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "file", ["elevator", pytest.param("elevator_small_wheels", marks=pytest.mark.slow)]
 )

@@ -479,6 +479,7 @@ def test_numbers_of_the_file_itself_are_explained(kept):
     assert gearopt.solve(scene).asked["gears"] == asked
 
 
+@pytest.mark.slow
 def test_python_goes_the_same_way(kept, drive):
     same(drive.stage(2).pair().design, gearopt.solve(PAIR).design)
     motion = drive.stage(2).dynamics(pinion=BEARINGS, wheel=BEARINGS)

@@ -330,6 +330,7 @@ def test_gears_of_a_new_kind_are_no_longer_absent(kind, monkeypatch):
     assert not absent("worm_starts") and not absent_kind("worm gears") and absent("bevel")
 
 
+@pytest.mark.slow
 def test_no_key_of_a_file_is_called_absent():
     for kind in kinds():
         scene = kind_named(kind).scene

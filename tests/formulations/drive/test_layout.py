@@ -331,6 +331,7 @@ def test_a_watcher_stops_a_run_and_keeps_the_best(method):
     assert result.value <= events[-1].best * (1.0 + 1e-12)  # what came after is kept too
 
 
+@pytest.mark.slow
 def test_exact_stopped_early_keeps_a_valid_bound():
     box = some_box(10, 5, partial=False)
     whole = solve(problem(box))

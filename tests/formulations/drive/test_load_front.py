@@ -101,6 +101,7 @@ def test_largest_values_of_interest_end_the_steps():
     assert none.infeasible and not none.points and none.message
 
 
+@pytest.mark.slow
 def test_free_widths_give_ends_and_steps_of_which_each_is_the_best_of_its_loads():
     train = drive(2, "free", **SMALL)
     most = {"gear_volume": 4.0 * found_best(train)}

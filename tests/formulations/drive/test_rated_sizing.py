@@ -45,6 +45,7 @@ def short_search(monkeypatch):
     monkeypatch.setattr(continuous_sizing, "SEARCH", 0.3)
 
 
+@pytest.mark.slow
 def test_a_published_pair_of_least_volume(monkeypatch):
     """The published numbers follow with their constants, which are those of metric prints.
 

@@ -135,6 +135,7 @@ def test_the_best_material_is_that_of_all_of_them(objective):
     assert names == [alone.index(min(alone)) // 3 + 1, alone.index(min(alone)) % 3 + 1]
 
 
+@pytest.mark.slow
 def test_index_limits_beside_ratings():
     """Each alone is a relaxation; where one of them does not bind, it changes nothing."""
     rated = rated_drive(F(9), [FREE, FREE], pinion_teeth=(20, 20), modules=MODULES[2:5])

@@ -239,6 +239,7 @@ def test_the_kernel_and_the_text_are_one_law():
         assert keeps == bool((batch.G[0, judged] <= 1.0).all())
 
 
+@pytest.mark.slow
 def test_a_list_of_trains_is_in_order_and_complete():
     train = replace(with_error(0.0985), pinion_teeth=(16, 50))
     found = trains(train, math.radians(0.0985))

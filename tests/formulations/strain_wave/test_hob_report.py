@@ -108,6 +108,7 @@ def test_ends_of_an_involutes_flank_carry_most_and_no_pressure_is_told():
     assert cut.windup_mrad > exact.windup_mrad and cut.near < exact.near
 
 
+@pytest.mark.slow
 def test_a_relief_clears_the_interference_of_15_degrees_with_little_play():
     """Conjugate teeth cut by 6.7 um; thinner involutes have 6.4 um of play, relieved ones 0.1."""
     plain = design(MODIFIED, LOW, 15.0).forms

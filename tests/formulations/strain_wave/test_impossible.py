@@ -79,6 +79,7 @@ def test_what_no_corner_of_the_ranges_reaches_is_proven():
     assert proof(never)["conflict"] == ["minor_axis"]
 
 
+@pytest.mark.slow
 def test_the_least_excess_balances_what_cannot_be_met():
     """At 300 N m ratcheting and fatigue fall short alike; what is told is in units."""
     own = carrying(300.0)

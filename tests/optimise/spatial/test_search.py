@@ -140,6 +140,7 @@ def test_a_value_of_zero_is_proven_in_the_unit_of_the_contract():
     assert result.status == "optimal" and abs(result.value) < 1e-9 and result.bound > -1e-4
 
 
+@pytest.mark.slow
 def test_an_infinite_box_is_closed_where_limits_close_it():
     bounds = [(-np.inf, np.inf)] * 2
     disc = posed(bounds, lambda x: (x[0] * x[1], [x[0] ** 2 + x[1] ** 2 - 2.0], []), [0.5, 0.2])
@@ -161,6 +162,7 @@ def test_budget_and_watcher_give_the_best_point_with_the_bound_so_far():
     assert short.status == "limit" and short.evaluations <= 10
 
 
+@pytest.mark.slow
 def test_a_lying_linear_solver_makes_no_false_bound(monkeypatch):
     rng, true = np.random.default_rng(0), linear.Linear.solved
 

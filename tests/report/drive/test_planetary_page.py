@@ -173,6 +173,7 @@ def test_helices_of_gears_in_mesh_run_alike_in_space():
     assert rate["sun"] > 0.0
 
 
+@pytest.mark.slow
 def test_flanks_of_rings_touch_at_the_pitch_point():
     """The inner mesh in section: outlines of planet, or pinion, and ring pass C and no more."""
     pairs = [mesh for stage in stages() for mesh in meshes(stage) if mesh[1][1] == "ring"]
@@ -219,6 +220,7 @@ def test_views_of_the_train_are_to_scale():
     assert all(numbers(e, "width")[0] == pytest.approx(PLATE[1] - PLATE[0]) for e in plates)
 
 
+@pytest.mark.slow
 def test_what_means_nothing_of_shafts_in_line_is_left_out():
     text = "".join(Reader(shown()).text)
     assert "centre distances [mm]" not in text and "total length" not in text.replace("\n", " ")
@@ -233,6 +235,7 @@ def test_what_means_nothing_of_shafts_in_line_is_left_out():
     assert planetary.loads(result(), METRIC).terminal
 
 
+@pytest.mark.slow
 def test_a_ring_is_drawn_as_its_own_tool_cuts_it():
     """Rings by a cutter, and by a tool of other addenda than the planets'."""
     own = {"cutter_teeth": 21, "cutter_tip_radius": 0.2}, {"addendum": 0.9, "tool_addendum": 1.4}

@@ -96,6 +96,7 @@ def test_forces_are_those_of_the_working_circles_by_either_standard():
     assert [mesh[key] for key in keys] == [other[key] for key in keys]
 
 
+@pytest.mark.slow
 def test_the_first_sentence_has_both_verdicts():
     said = (
         "Not safe: by AGMA, 3 safety factors fall short, contact of the pinion most; "

@@ -205,6 +205,7 @@ def test_a_drawing_beyond_all_paper_is_left_out(result):
     assert not section.drawings and "No drawing: at 1e+09:1 it would be" in section.words[-1]
 
 
+@pytest.mark.slow
 def test_the_grid_of_a_high_or_wide_cutter_has_few_lines(found):
     """Edges 1 m high, or 10 km wide, on a grid of 0.05 mm: at most 62 lines either way."""
     for high, wide in ((1e3, 1.0), (1.0, 1e7)):

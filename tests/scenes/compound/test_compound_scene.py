@@ -132,6 +132,7 @@ def test_the_value_is_that_of_fractions():
     assert result.value == result.bound and result.gap == 0.0
 
 
+@pytest.mark.slow
 def test_a_ratio_may_be_a_fraction_and_is_read_exactly():
     """127/120 is the inch thread of a metric lathe, and no decimal."""
     result = solved('"127/120"', (10, 127))

@@ -43,6 +43,7 @@ def test_the_formula_of_a_mesh_loss_is_told_beside_its_optimum(minimised):
     assert all("not checked against any source" in note for note in told)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("second", ["mesh_loss", "total_length"])
 def test_the_formula_of_a_mesh_loss_is_told_beside_a_front_of_it(second):
     """The objectives of the front count, not the one that the file minimises."""

@@ -283,6 +283,7 @@ def test_prices_are_those_of_the_drive_solved_again():
     assert all(i.price is None or i.price < 1e-9 for i in found.influences)  # easing never costs
 
 
+@pytest.mark.slow
 def test_a_stopped_explanation_says_what_it_has():
     """No time: the answer's status stays honest, and nothing is claimed."""
     scene, _ = scene_of(SMALL_WHEELS)

@@ -348,6 +348,7 @@ def test_a_box_wider_than_allowed_is_refused():
         read(with_layout(width='"400 mm"', largest_width='"300 mm"').encode())
 
 
+@pytest.mark.slow
 def test_a_box_that_is_too_long_names_the_shortest_order():
     """In order the box is 209.9 mm long; in partial span no other order is shorter."""
     result = gearopt.solve(scene(with_layout(largest_length='"200 mm"')), remedies=False)

@@ -232,6 +232,7 @@ def test_limits_beside_given_gears_at_a_distance_are_named():
         gearopt.solve(tables)
 
 
+@pytest.mark.slow
 def test_one_reduction_of_planets_is_read_as_a_list_of_it():
     key = "stage[1].planet_teeth_reduction"
     few = {"stage[1].sun_teeth": [30, 34], "stage[1].planets": 3}

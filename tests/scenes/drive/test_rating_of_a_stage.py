@@ -69,6 +69,7 @@ def test_one_stage_of_its_own_lies_between():
         assert first.limits[name] <= 1.0 + 1e-9
 
 
+@pytest.mark.slow
 def test_key_figures_name_what_is_nearest_where_requirements_differ():
     differing, same = (
         [tile.name for tile in tiles(solved(t), METRIC)] for t in (STRICTER, ELEVATOR)

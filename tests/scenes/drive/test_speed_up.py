@@ -218,6 +218,7 @@ def test_real_valued_gears_by_ratings_need_pinions_that_drive():
         gearopt.solve(tables)
 
 
+@pytest.mark.slow
 def test_both_sides_of_1_are_told():
     tables = sized({"ratio": 1, "ratio_tolerance": 0.05}, stage=[{}], teeth={"coprime": True})
     result = gearopt.solve(tables, top=12)

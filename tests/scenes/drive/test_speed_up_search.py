@@ -108,6 +108,7 @@ QUICK = (21,)
 SEEDS = [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in range(24)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_best_is_that_of_all_candidates(seed):
     assert_best(*drawn(seed))

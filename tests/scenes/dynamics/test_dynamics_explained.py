@@ -26,6 +26,7 @@ def test_a_motion_is_told_to_the_digits_that_were_asked(tmp_path):
     assert 0.0 < apart <= 1.1e-10 * np.max(np.abs(told[1]))
 
 
+@pytest.mark.slow
 def test_a_proof_tells_the_time_that_its_remedies_took(tmp_path, monkeypatch):
     """Else what is left of a budget is spent again, on files that are solved in full."""
     module = import_module("gearopt.scenes.dynamics.steps")

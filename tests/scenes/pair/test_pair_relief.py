@@ -182,6 +182,7 @@ def test_ranges_of_the_file_hold():
     assert not free.report.get("notes")
 
 
+@pytest.mark.slow
 def test_other_criteria_have_no_proven_search_and_say_so():
     result = gearopt.solve(with_relief(minimise="load_jump"), budget=gearopt.Budget(0.3))
     assert result.status in ("feasible", "limit") and result.bound is None

@@ -161,6 +161,7 @@ def test_every_number_that_helps_alone_is_least_and_a_module_is_added():
     assert any(way.what == "train.modules" for way in explained.remedies)
 
 
+@pytest.mark.slow
 def test_the_reason_of_an_impossible_duty_is_told_once(tmp_path):
     """Eta T^2 < 4 b F_L."""
     content = parse(RATIO)
