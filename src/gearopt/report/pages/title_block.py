@@ -30,10 +30,10 @@ def margins(title: str, asked: Mapping[str, Any]) -> str:
 
     Browsers that have no boxes in margins leave them out.
     """
-    told = block(asked)
-    which = [f"{k} {told[k]}" if k == "Revision" else told[k] for k in SHORT if k in told]
+    entries = block(asked)
+    which = [f"{k} {entries[k]}" if k == "Revision" else entries[k] for k in SHORT if k in entries]
     texts = {
-        "@top-left": _text(told.get("Company", "")),
+        "@top-left": _text(entries.get("Company", "")),
         "@top-right": _text(title),
         "@bottom-left": _text(", ".join(which)),
         "@bottom-right": '"Page " counter(page) " of " counter(pages)',

@@ -40,8 +40,8 @@ def single(rating: DriveRating) -> bool:
 
 def design(result: Result, measures: Measures) -> Section | None:
     """The tables of a design, without those of rating and drawings; None without a design."""
-    own = ("rating", "drawing")
-    others = {key: value for key, value in result.design.items() if key not in own}
+    apart = ("rating", "drawing")
+    others = {key: value for key, value in result.design.items() if key not in apart}
     return design_section(replace(result, design=others), measures)
 
 
