@@ -73,7 +73,7 @@ def over_speeds(
         falling_dynamic_factor=gaps([dynamic_factor(o.load, pair.load) for o in falling], 6),
         errors=gaps([o.error for o in rising], 3),
         falling_errors=gaps([o.error for o in falling], 3),
-        transmission_error=_errors(rising) if pair.error else None,
+        transmission_error=_errors(rising) if pair.error and rising else None,
         falling_transmission_error=_errors(falling) if pair.error and falling else None,
     )
 
